@@ -1,0 +1,84 @@
+#include "tassilo/region/region.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "tassilo/base/contract.h"
+
+namespace tassilo {
+namespace {
+
+[[maybe_unused]] bool keeps_invariant(std::span<const PixelRun> runs) {
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (runs[i].begin >= runs[i].end) return false;
+    if (i == 0) continue;
+    const PixelRun &before = runs[i - 1], &run = runs[i];
+    if (run.row < before.row || (run.row == before.row && run.begin <= before.end)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Region Region::from_sorted(std::vector<PixelRun> runs) {
+#ifndef NDEBUG
+  expects(keeps_invariant(runs), "runs sorted, disjoint, not touching, not empty");
+#endif
+  Region region;
+  region.runs_ = std::move(runs);
+  return region;
+}
+
+Region Region::from_runs(std::vector<PixelRun> runs) {
+  std::erase_if(runs, [](const PixelRun& run) { return run.begin >= run.end; });
+  std::ranges::sort(runs);
+  std::size_t kept = 0;
+  for (const PixelRun& run : runs) {
+    if (kept > 0 && runs[kept - 1].row == run.row && run.begin <= runs[kept - 1].end)
+      runs[kept - 1].end = std::max(runs[kept - 1].end, run.end);
+    else
+      runs[kept++] = run;
+  }
+  runs.resize(kept);
+  return from_sorted(std::move(runs));
+}
+
+Region Region::from_box(const PixelBox& box) {
+  std::vector<PixelRun> runs;
+  if (!box.empty()) {
+    runs.reserve(static_cast<std::size_t>(box.height()));
+    for (int r = box.y0; r < box.y1; ++r)
+      runs.push_back({static_cast<std::int16_t>(r), static_cast<std::int16_t>(box.x0),
+                      static_cast<std::int16_t>(box.x1)});
+  }
+  return from_sorted(std::move(runs));
+}
+
+std::int64_t area(const Region& region) {
+  std::int64_t sum = 0;
+  for (const PixelRun& run : region.runs()) sum += run.length();
+  return sum;
+}
+
+PixelBox bounding_box(const Region& region) {
+  const auto runs = region.runs();
+  if (runs.empty()) return {};
+  PixelBox box{std::numeric_limits<int>::max(), runs.front().row, std::numeric_limits<int>::min(),
+               runs.back().row + 1};
+  for (const PixelRun& run : runs) {
+    box.x0 = std::min<int>(box.x0, run.begin);
+    box.x1 = std::max<int>(box.x1, run.end);
+  }
+  return box;
+}
+
+bool contains(const Region& region, int column, int row) {
+  const auto runs = region.runs();
+  // The first run that ends beyond the pixel is the only one that can hold it.
+  const auto it = std::ranges::partition_point(runs, [&](const PixelRun& run) {
+    return run.row < row || (run.row == row && run.end <= column);
+  });
+  return it != runs.end() && it->row == row && it->begin <= column;
+}
+
+}  // namespace tassilo

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tassilo/geometry/box.h"
+
+namespace tassilo {
+
+/// One horizontal stretch of pixels: columns [begin, end) of `row`. Signed: runs may leave the image. [px]
+struct PixelRun {
+  std::int16_t row = 0, begin = 0, end = 0;
+
+  int length() const { return end - begin; }
+  friend auto operator<=>(const PixelRun&, const PixelRun&) = default;
+};
+
+/// A set of pixels as runs; need not be connected, may be empty.
+///
+/// Invariant: runs are not empty, sorted by (row, begin), and two runs of a row neither overlap nor touch.
+/// So equal sets have equal runs.
+class Region {
+ public:
+  Region() = default;
+
+  /// Takes runs that already keep the invariant; checked in debug builds. O(1) in release.
+  static Region from_sorted(std::vector<PixelRun> runs);
+  /// Any runs: empty ones dropped, overlapping and touching ones joined. O(R log R).
+  static Region from_runs(std::vector<PixelRun> runs);
+  /// All pixels of a box.
+  static Region from_box(const PixelBox& box);
+
+  std::span<const PixelRun> runs() const { return runs_; }
+  bool empty() const { return runs_.empty(); }
+  friend bool operator==(const Region&, const Region&) = default;
+
+ private:
+  std::vector<PixelRun> runs_;
+};
+
+/// Number of pixels. O(R).
+std::int64_t area(const Region& region);
+/// Smallest axis-parallel box; empty for the empty region. O(R).
+PixelBox bounding_box(const Region& region);
+/// Is pixel (column, row) in the region? O(log R).
+bool contains(const Region& region, int column, int row);
+
+}  // namespace tassilo
