@@ -17,12 +17,13 @@ class GroundMap {
 
   int width() const { return width_; }
   int height() const { return height_; }
-  /// Floor point at the pixel's centre; nothing at and above the horizon or beyond max_range. The pixel must be in the image.
+  /// Floor point at the pixel's centre; nothing at and above the horizon or beyond max_range. The pixel must be in the
+  /// image.
   std::optional<FloorPoint> at(int column, int row) const;
 
  private:
   struct Cell {
-    float x, y;   ///< NaN where the ray does not meet the floor.
+    float x, y;  ///< NaN where the ray does not meet the floor.
   };
   int width_ = 0, height_ = 0;
   std::vector<Cell> cells_;

@@ -10,8 +10,8 @@ using RobotPoint = Point3<RobotFrame>;  ///< Point or direction in the robot fra
 /// The camera body frame (x forward, y left, z up) in the robot frame, R = Rz(yaw) Ry(pitch) Rx(roll);
 /// pitch > 0 looks down. The optical axes in the body frame are X = -y, Y = -z, Z = x.
 struct CameraMount {
-  double x = 0, y = 0, z = 0;             ///< Optical centre in the robot frame. [m]
-  double roll = 0, pitch = 0, yaw = 0;    ///< [rad]
+  double x = 0, y = 0, z = 0;           ///< Optical centre in the robot frame. [m]
+  double roll = 0, pitch = 0, yaw = 0;  ///< [rad]
 
   friend bool operator==(const CameraMount&, const CameraMount&) = default;
   /// Throws Error naming the first field out of range: all finite, z > 0, |angles| <= pi.
@@ -20,8 +20,8 @@ struct CameraMount {
 
 /// One standard deviation of each mount value; how well the mount is known, shaking while driving included.
 struct MountSigma {
-  double x = 0.0, y = 0.0, z = 0.003;                     ///< [m]
-  double roll = 0.003, pitch = 0.003, yaw = 0.003;        ///< [rad]
+  double x = 0.0, y = 0.0, z = 0.003;               ///< [m]
+  double roll = 0.003, pitch = 0.003, yaw = 0.003;  ///< [rad]
 };
 
 /// A camera on a robot: pixel <-> ray from the optical centre, in the robot frame.
@@ -33,8 +33,8 @@ class MountedCamera {
   const CameraMount& mount() const { return mount_; }
   RobotPoint center() const { return {mount_.x, mount_.y, mount_.z}; }
 
-  RobotPoint robot_from_optical(OpticalPoint direction) const;   ///< Rotates a direction.
-  OpticalPoint optical_from_robot(RobotPoint direction) const;   ///< Rotates a direction.
+  RobotPoint robot_from_optical(OpticalPoint direction) const;  ///< Rotates a direction.
+  OpticalPoint optical_from_robot(RobotPoint direction) const;  ///< Rotates a direction.
 
   /// Pixel of a point in space, possibly outside the image; nothing when it cannot show.
   std::optional<PixelPoint> project(RobotPoint point) const;
@@ -47,7 +47,7 @@ class MountedCamera {
  private:
   CameraModel model_;
   CameraMount mount_;
-  double r_[3][3];   ///< robot_from_body
+  double r_[3][3];  ///< robot_from_body
 };
 
 }  // namespace tassilo
