@@ -1,0 +1,90 @@
+#!/usr/bin/env bash
+# Installs what building, testing and running Tassilo needs, and nothing when it is all there.
+# usage: tools/install_deps.sh [--references] [--help]
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+usage() {
+  cat <<'EOF'
+usage: tools/install_deps.sh [--references]
+  Installs the missing packages through apt-get (tested on Debian 12; about 300 MB to download on
+  a bare machine) and the web UI's packages through npm where webui/ exists. Does nothing when nothing is missing.
+  --references  also clang (for fuzzing) and the OpenCV modules that some tests compare with (about 75 MB more);
+                without them those tests are skipped and listed
+EOF
+}
+
+references=0
+for argument in "$@"; do
+  case "$argument" in
+    --references) references=1 ;;
+    -h | --help) usage; exit 0 ;;
+    *) usage >&2; exit 2 ;;
+  esac
+done
+
+packages=(
+  g++ cmake ninja-build ccache pkg-config make git
+  libeigen3-dev
+  libavformat-dev libavcodec-dev libswscale-dev libavutil-dev
+  libyaml-cpp-dev libpng-dev libjpeg-dev nlohmann-json3-dev libcli11-dev libfmt-dev libcairo2-dev
+  libgtest-dev libgmock-dev libbenchmark-dev
+  clang-format python3 python3-numpy python3-jsonschema ffmpeg
+)
+# imgproc and calib3d alone: the whole libopencv-dev is twice as large.
+if [ "$references" = 1 ]; then packages+=(clang libopencv-imgproc-dev libopencv-calib3d-dev); fi
+if [ -d webui ]; then packages+=(nodejs npm); fi
+
+is_installed() { dpkg-query --show --showformat='${db:Status-Status}\n' "$1" 2>/dev/null | grep -qx installed; }
+
+install_with_apt() {
+  local missing=() package
+  for package in "${packages[@]}"; do
+    is_installed "$package" || missing+=("$package")
+  done
+  if [ ${#missing[@]} = 0 ]; then
+    echo "install: all ${#packages[@]} packages are there"
+    return
+  fi
+  echo "install: missing ${missing[*]}"
+  local apt=(env DEBIAN_FRONTEND=noninteractive apt-get -q -y -o Acquire::Retries=3 -o DPkg::Lock::Timeout=300)
+  if [ "$(id -u)" != 0 ]; then
+    if ! command -v sudo >/dev/null; then
+      echo "install: not root and no sudo: run as root: apt-get install --no-install-recommends ${missing[*]}" >&2
+      exit 1
+    fi
+    echo "install: not root, so sudo runs apt-get and may ask for your password"
+    apt=(sudo "${apt[@]}")
+  fi
+  # Package lists that are old or absent make the first try fail; only then are they fetched.
+  if "${apt[@]}" install --no-install-recommends "${missing[@]}"; then return; fi
+  echo "install: trying again with fresh package lists"
+  local attempt
+  for attempt in 1 2 3; do
+    if "${apt[@]}" update && "${apt[@]}" install --no-install-recommends "${missing[@]}"; then return; fi
+    echo "install: attempt $attempt of 3 failed" >&2
+    sleep $((5 * attempt))
+  done
+  echo "install: apt-get could not install ${missing[*]}; its messages are above" >&2
+  exit 1
+}
+
+install_with_npm() {
+  # npm ci starts from nothing each time, so it runs only when the lock file changed since the last time.
+  local lock=webui/package-lock.json stamp=webui/node_modules/.tassilo-lock
+  [ -f "$lock" ] || return 0
+  if [ -f "$stamp" ] && cmp -s "$lock" "$stamp"; then return 0; fi
+  (cd webui && npm ci --no-audit --no-fund)
+  cp "$lock" "$stamp"
+}
+
+if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
+  {
+    echo "install: this machine has no apt-get; Tassilo is built and tested on Debian 12."
+    echo "install: install by hand what these Debian packages hold, then build with 'cmake --preset release':"
+    echo "  ${packages[*]}"
+  } >&2
+  exit 1
+fi
+install_with_apt
+install_with_npm
