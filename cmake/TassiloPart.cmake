@@ -37,6 +37,27 @@ function(tassilo_part name)
   endif()
 endfunction()
 
+# tassilo_opencv_tests(camera MODULES calib3d TESTS camera_opencv_test.cpp)
+#
+# Tests of a part that compare with OpenCV, added to its test program. Without OpenCV one test stands for them and is
+# skipped, so that the list of skipped tests tells what was not checked.
+function(tassilo_opencv_tests name)
+  cmake_parse_arguments(CV "" "" "MODULES;TESTS" ${ARGN})
+  if(NOT TASSILO_TESTS)
+    return()
+  endif()
+  find_package(OpenCV QUIET COMPONENTS ${CV_MODULES})
+  if(OpenCV_FOUND)
+    target_sources(${name}_tests PRIVATE ${CV_TESTS})
+    target_link_libraries(${name}_tests PRIVATE ${OpenCV_LIBS})
+  else()
+    list(JOIN CV_MODULES ", " modules)
+    add_test(NAME ${name}.opencv COMMAND ${CMAKE_COMMAND} -E echo
+      "skipped: OpenCV (${modules}) is not installed; tools/install_deps.sh --references installs it")
+    set_tests_properties(${name}.opencv PROPERTIES SKIP_REGULAR_EXPRESSION "^skipped:")
+  endif()
+endfunction()
+
 function(tassilo_warnings target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Wpedantic $<$<BOOL:${TASSILO_WERROR}>:-Werror>)
 endfunction()
