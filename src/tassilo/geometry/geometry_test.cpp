@@ -49,7 +49,7 @@ TEST(PixelBox, HullHoldsBothAndIntersectionLiesInBoth) {
     const double iou = intersection_over_union(a, b);
     EXPECT_GE(iou, 0);
     EXPECT_LE(iou, 1);
-    if (!a.empty()) EXPECT_DOUBLE_EQ(intersection_over_union(a, a), 1);
+    EXPECT_DOUBLE_EQ(intersection_over_union(a, a), a.empty() ? 0 : 1);
   }
 }
 

@@ -13,7 +13,8 @@
 #include "tassilo/geometry/point.h"
 
 // Everything seen in one frame, as plain values that travel. Floor values are in the robot frame and missing without a
-// calibrated, mounted camera; distances and bearings are from the robot's origin. docs/conventions.md, schema/scene.schema.json.
+// calibrated, mounted camera; distances and bearings are from the robot's origin. docs/conventions.md,
+// schema/scene.schema.json.
 
 namespace tassilo {
 
@@ -43,8 +44,8 @@ struct GoalPost {
 struct Goal {
   GoalColor color = GoalColor::yellow;
   PixelBox box;
-  std::optional<double> bearing;      ///< Of the mouth's middle, or of the visible part when that is unknown. [rad]
-  std::optional<FloorPoint> position; ///< Middle of the mouth.
+  std::optional<double> bearing;       ///< Of the mouth's middle, or of the visible part when that is unknown. [rad]
+  std::optional<FloorPoint> position;  ///< Middle of the mouth.
   std::vector<GoalPost> posts;
 };
 
@@ -53,8 +54,8 @@ enum class Team { unknown, cyan, magenta };
 struct RobotOnFloor {
   Gaussian2<RobotFrame> nearest;
   DistanceBounds bounds;
-  FloorPoint center;   ///< Estimated middle of the robot.
-  double width = 0;    ///< Across the line of sight. [m]
+  FloorPoint center;  ///< Estimated middle of the robot.
+  double width = 0;   ///< Across the line of sight. [m]
 };
 struct RobotSeen {
   Team team = Team::unknown;
@@ -85,11 +86,11 @@ struct FreeSpace {
 
 enum class PoseKind { two_lines, one_line, predicted, goal, model, start };
 struct PoseSeen {
-  double x = 0, y = 0, theta = 0;     ///< Field frame.
-  std::array<double, 9> covariance{}; ///< Row-major x, y, theta.
+  double x = 0, y = 0, theta = 0;      ///< Field frame.
+  std::array<double, 9> covariance{};  ///< Row-major x, y, theta.
   PoseKind kind = PoseKind::start;
-  double age = 0;                     ///< Since the last absolute fix. [s]
-  bool mirror = false;                ///< The point-mirrored pose is as likely.
+  double age = 0;       ///< Since the last absolute fix. [s]
+  bool mirror = false;  ///< The point-mirrored pose is as likely.
 };
 
 /// Duration of each stage. [ms]
@@ -100,8 +101,8 @@ struct StageTime {
 
 struct Scene {
   std::int64_t frame = 0;
-  double t = 0;        ///< Capture time on the source's clock. [s]
-  std::string image;   ///< File name for single images, else empty.
+  double t = 0;       ///< Capture time on the source's clock. [s]
+  std::string image;  ///< File name for single images, else empty.
   std::optional<PoseSeen> pose;
   std::vector<Ball> balls;  ///< Best first.
   std::vector<Goal> goals;
