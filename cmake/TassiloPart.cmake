@@ -33,7 +33,7 @@ function(tassilo_part name)
     tassilo_warnings(${name}_tests)
     target_link_libraries(${name}_tests PRIVATE ${target} GTest::gtest_main GTest::gmock ${PART_LINK})
     target_compile_definitions(${name}_tests PRIVATE TASSILO_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-    gtest_discover_tests(${name}_tests TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60)
+    gtest_discover_tests(${name}_tests TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60 NO_PRETTY_VALUES)
   endif()
 endfunction()
 
