@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "tassilo/base/contract.h"
+#include "tassilo/region/internal/coordinate.h"
 
 namespace tassilo {
 namespace {
@@ -48,8 +49,7 @@ Region Region::from_box(const PixelBox& box) {
   if (!box.empty()) {
     runs.reserve(static_cast<std::size_t>(box.height()));
     for (int r = box.y0; r < box.y1; ++r)
-      runs.push_back({static_cast<std::int16_t>(r), static_cast<std::int16_t>(box.x0),
-                      static_cast<std::int16_t>(box.x1)});
+      runs.push_back({to_coordinate(r), to_coordinate(box.x0), to_coordinate(box.x1)});
   }
   return from_sorted(std::move(runs));
 }
@@ -63,8 +63,7 @@ std::int64_t area(const Region& region) {
 PixelBox bounding_box(const Region& region) {
   const auto runs = region.runs();
   if (runs.empty()) return {};
-  PixelBox box{std::numeric_limits<int>::max(), runs.front().row, std::numeric_limits<int>::min(),
-               runs.back().row + 1};
+  PixelBox box{std::numeric_limits<int>::max(), runs.front().row, std::numeric_limits<int>::min(), runs.back().row + 1};
   for (const PixelRun& run : runs) {
     box.x0 = std::min<int>(box.x0, run.begin);
     box.x1 = std::max<int>(box.x1, run.end);
@@ -75,9 +74,8 @@ PixelBox bounding_box(const Region& region) {
 bool contains(const Region& region, int column, int row) {
   const auto runs = region.runs();
   // The first run that ends beyond the pixel is the only one that can hold it.
-  const auto it = std::ranges::partition_point(runs, [&](const PixelRun& run) {
-    return run.row < row || (run.row == row && run.end <= column);
-  });
+  const auto it = std::ranges::partition_point(
+      runs, [&](const PixelRun& run) { return run.row < row || (run.row == row && run.end <= column); });
   return it != runs.end() && it->row == row && it->begin <= column;
 }
 

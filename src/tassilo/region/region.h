@@ -3,6 +3,7 @@
 #include <compare>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "tassilo/geometry/box.h"
@@ -32,7 +33,10 @@ class Region {
   /// All pixels of a box.
   static Region from_box(const PixelBox& box);
 
-  std::span<const PixelRun> runs() const { return runs_; }
+  std::span<const PixelRun> runs() const& { return runs_; }
+  std::span<const PixelRun> runs() const&& = delete;  ///< Would outlive the runs: for (run : opening(...).runs()).
+  /// Gives the runs away, so that their memory can serve the next region; the region is empty afterwards.
+  std::vector<PixelRun> take_runs() { return std::exchange(runs_, {}); }
   bool empty() const { return runs_.empty(); }
   friend bool operator==(const Region&, const Region&) = default;
 
