@@ -7,6 +7,7 @@
 
 #include "tassilo/region/internal/coordinate.h"
 #include "tassilo/region/internal/row_sweep.h"
+#include "tassilo/region/internal/run_builder.h"
 
 namespace tassilo {
 namespace {
@@ -47,10 +48,23 @@ Region combined(const Region& first, const Region& second, Keep keep) {
   return Region::from_sorted(std::move(runs));
 }
 
+/// A number that orders pixels as a region does; cheaper than comparing row and column in turn.
+std::int64_t place(int row, int column) { return row * std::int64_t{65536} + column; }
+
 }  // namespace
 
-Region union_of(const Region& a, const Region& b) {
-  return combined(a, b, [](bool in_a, bool in_b) { return in_a || in_b; });
+Region union_of(const Region& first, const Region& second) {
+  const auto a = first.runs(), b = second.runs();
+  RunBuilder result(a.size() + b.size());
+  std::size_t ia = 0, ib = 0;
+  while (ia < a.size() && ib < b.size()) {
+    const bool from_a = place(a[ia].row, a[ia].begin) < place(b[ib].row, b[ib].begin);
+    result.add_joined(from_a ? a[ia] : b[ib]);
+    ia += from_a;
+    ib += !from_a;
+  }
+  for (const PixelRun& run : ib == b.size() ? a.subspan(ia) : b.subspan(ib)) result.add_joined(run);
+  return std::move(result).region();
 }
 
 Region union_of(std::span<const Region> regions) {
@@ -62,20 +76,17 @@ Region union_of(std::span<const Region> regions) {
 
 Region intersection(const Region& first, const Region& second) {
   const auto a = first.runs(), b = second.runs();
-  std::vector<PixelRun> runs;
-  runs.reserve(std::max(a.size(), b.size()));
+  RunBuilder result(a.size() + b.size());
   std::size_t ia = 0, ib = 0;
   while (ia < a.size() && ib < b.size()) {
     const PixelRun &run_a = a[ia], &run_b = b[ib];
-    if (run_a.row != run_b.row) {
-      ++(run_a.row < run_b.row ? ia : ib);
-      continue;
-    }
     const auto begin = std::max(run_a.begin, run_b.begin), end = std::min(run_a.end, run_b.end);
-    if (begin < end) runs.push_back({run_a.row, begin, end});
-    ++(run_a.end < run_b.end ? ia : ib);
+    result.add_if_not_empty({run_a.row, begin, run_a.row == run_b.row ? end : begin});
+    const bool a_ends_first = place(run_a.row, run_a.end) < place(run_b.row, run_b.end);
+    ia += a_ends_first;
+    ib += !a_ends_first;
   }
-  return Region::from_sorted(std::move(runs));
+  return std::move(result).region();
 }
 
 Region difference(const Region& a, const Region& b) {

@@ -66,6 +66,11 @@ double contour_length_of(const PixelPatterns& patterns) {
          std::numbers::sqrt2 * static_cast<double>(patterns.three + 2 * patterns.diagonal);
 }
 
+std::int64_t euler_number_of(const PixelPatterns& patterns, Connectivity foreground) {
+  const std::int64_t diagonals = foreground == Connectivity::eight ? -2 : 2;
+  return (patterns.one - patterns.three + diagonals * patterns.diagonal) / 4;
+}
+
 /// First and last pixel of every row, by rising row, then column.
 std::vector<PixelPoint> row_ends(std::span<const PixelRun> runs) {
   std::vector<PixelPoint> points;
@@ -125,9 +130,12 @@ ShapeFeatures shape_features(const Region& region) {
 }
 
 double contour_length(const Region& region) {
-  if (hole_count(region) == 0) return contour_length_of(count_patterns(region));
   double length = 0;
-  for (const Region& component : components(region)) length += contour_length_of(count_patterns(fill_holes(component)));
+  for (const Region& component : components(region)) {
+    const PixelPatterns patterns = count_patterns(component);
+    const bool has_holes = euler_number_of(patterns, Connectivity::eight) < 1;
+    length += contour_length_of(has_holes ? count_patterns(fill_holes(component)) : patterns);
+  }
   return length;
 }
 
@@ -138,9 +146,7 @@ double compactness(const Region& region) {
 }
 
 std::int64_t euler_number(const Region& region, Connectivity foreground) {
-  const PixelPatterns patterns = count_patterns(region);
-  const std::int64_t diagonals = foreground == Connectivity::eight ? -2 : 2;
-  return (patterns.one - patterns.three + diagonals * patterns.diagonal) / 4;
+  return euler_number_of(count_patterns(region), foreground);
 }
 
 std::int64_t hole_count(const Region& region, Connectivity foreground) {

@@ -53,7 +53,7 @@ ShapeFeatures shape_features(const Region& region);
 /// Length of the outer contours of all components, through the centres of the border pixels: 1 per step along an axis,
 /// sqrt 2 per diagonal step; contours of holes do not count, those of islands in holes do; a line of n pixels is walked
 /// both ways, 2 (n - 1). HALCON `contlength`; OpenCV `arcLength` over `findContours`. [px]
-/// O(R a(R)); with holes also one copy of each component.
+/// O(R a(R)), with one copy of each component.
 /// source   own: counts of 2 x 2 pixel patterns after S. B. Gray, "Local properties of binary images in two
 ///          dimensions", IEEE Trans. Computers C-20(5), 1971.
 double contour_length(const Region& region);

@@ -10,6 +10,7 @@
 #include "tassilo/base/contract.h"
 #include "tassilo/region/algebra.h"
 #include "tassilo/region/internal/coordinate.h"
+#include "tassilo/region/internal/run_builder.h"
 
 namespace tassilo {
 namespace {
@@ -45,30 +46,22 @@ struct RowOffsets {
 
 struct Dilate {
   static Region along_row(const Region& region, const RowOffsets& by) {
-    std::vector<PixelRun> runs;
-    runs.reserve(region.runs().size());
-    for (const PixelRun& run : region.runs()) {
-      const PixelRun grown{to_coordinate(run.row + by.row), to_coordinate(run.begin + by.first),
-                           to_coordinate(run.end + by.last)};
-      if (!runs.empty() && runs.back().row == grown.row && grown.begin <= runs.back().end)
-        runs.back().end = grown.end;
-      else
-        runs.push_back(grown);
-    }
-    return Region::from_sorted(std::move(runs));
+    RunBuilder result(region.runs().size());
+    for (const PixelRun& run : region.runs())
+      result.add_joined(
+          {to_coordinate(run.row + by.row), to_coordinate(run.begin + by.first), to_coordinate(run.end + by.last)});
+    return std::move(result).region();
   }
   static Region join(const Region& a, const Region& b) { return union_of(a, b); }
 };
 
 struct Erode {
   static Region along_row(const Region& region, const RowOffsets& by) {
-    std::vector<PixelRun> runs;
-    runs.reserve(region.runs().size());
+    RunBuilder result(region.runs().size());
     for (const PixelRun& run : region.runs())
-      if (run.length() > by.last - by.first)
-        runs.push_back(
-            {to_coordinate(run.row - by.row), to_coordinate(run.begin - by.first), to_coordinate(run.end - by.last)});
-    return Region::from_sorted(std::move(runs));
+      result.add_if_not_empty(
+          {to_coordinate(run.row - by.row), to_coordinate(run.begin - by.first), to_coordinate(run.end - by.last)});
+    return std::move(result).region();
   }
   static Region join(const Region& a, const Region& b) { return intersection(a, b); }
 };

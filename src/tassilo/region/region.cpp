@@ -5,6 +5,7 @@
 
 #include "tassilo/base/contract.h"
 #include "tassilo/region/internal/coordinate.h"
+#include "tassilo/region/internal/run_builder.h"
 
 namespace tassilo {
 namespace {
@@ -33,15 +34,9 @@ Region Region::from_sorted(std::vector<PixelRun> runs) {
 Region Region::from_runs(std::vector<PixelRun> runs) {
   std::erase_if(runs, [](const PixelRun& run) { return run.begin >= run.end; });
   std::ranges::sort(runs);
-  std::size_t kept = 0;
-  for (const PixelRun& run : runs) {
-    if (kept > 0 && runs[kept - 1].row == run.row && run.begin <= runs[kept - 1].end)
-      runs[kept - 1].end = std::max(runs[kept - 1].end, run.end);
-    else
-      runs[kept++] = run;
-  }
-  runs.resize(kept);
-  return from_sorted(std::move(runs));
+  RunBuilder result(runs.size());
+  for (const PixelRun& run : runs) result.add_joined(run);
+  return std::move(result).region();
 }
 
 Region Region::from_box(const PixelBox& box) {
