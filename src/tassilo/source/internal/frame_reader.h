@@ -1,0 +1,37 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "tassilo/image/frame.h"
+#include "tassilo/source/frame_source.h"
+
+namespace tassilo {
+
+/// What each kind of source does: see FrameSource, which reads ahead for SourceInfo and remembers end and damage.
+class FrameReader {
+ public:
+  virtual ~FrameReader() = default;
+  /// Not called again after it returned nothing or threw.
+  virtual std::optional<Frame> next() = 0;
+  /// Name, description, frame count and live; the rest is read off the first frame. Asked after that frame was read.
+  virtual SourceInfo info() const = 0;
+};
+
+inline constexpr int kMaxFrameSize = 32767;  ///< Runs have 16-bit coordinates. [px]
+
+/// Throws Error(subject, ...) unless 1 <= width, height <= kMaxFrameSize.
+void check_frame_size(const std::string& subject, int width, int height);
+
+/// "yuv422p 384x172 px, limited range"
+std::string describe_pixels(std::string_view format, const Frame& frame);
+
+std::unique_ptr<FrameReader> make_raw_reader(const SourceOptions& options);
+/// `folder`: all its images in natural order; else one image file.
+std::unique_ptr<FrameReader> make_image_reader(const SourceOptions& options);
+std::unique_ptr<FrameReader> make_video_reader(const SourceOptions& options);
+
+/// Whether the file begins as PNG or JPEG files do and is no Motion JPEG by its name. False for unreadable files.
+bool is_image_file(const std::string& path);
+
+}  // namespace tassilo
