@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <numbers>
 #include <numeric>
-#include <ranges>
 #include <span>
 
 #include "tassilo/region/algebra.h"
@@ -85,8 +84,7 @@ std::vector<PixelPoint> row_ends(std::span<const PixelRun> runs) {
 }
 
 /// The hull's chain along points in the order given, turning clockwise on the screen (x right, y down) only.
-template <class Points>
-void append_chain(const Points& points, std::vector<PixelPoint>& hull) {
+void append_chain(const std::vector<PixelPoint>& points, std::vector<PixelPoint>& hull) {
   const std::size_t start = hull.size();
   for (const PixelPoint& point : points) {
     while (hull.size() >= start + 2 && cross(hull.back() - hull[hull.size() - 2], point - hull.back()) <= 0)
@@ -158,7 +156,7 @@ std::vector<PixelPoint> convex_hull(const Region& region) {
   if (points.size() < 2) return points;
   std::vector<PixelPoint> hull;
   append_chain(points, hull);
-  append_chain(std::views::reverse(points), hull);
+  append_chain({points.rbegin(), points.rend()}, hull);
   return hull;
 }
 
@@ -198,7 +196,7 @@ double rectangularity(const Region& region) {
   const int column = static_cast<int>(center.x), row = static_cast<int>(center.y);
   const Region box = region_from_polygon(corners, {column - reach, row - reach, column + reach + 2, row + reach + 2});
   const auto differing = static_cast<double>(area(symmetric_difference(box, region)));
-  return std::max(0.0, 1 - differing / static_cast<double>(features.area));
+  return std::max(0.0, 1 - differing / (4 * a * b));
 }
 
 }  // namespace tassilo

@@ -75,9 +75,9 @@ std::int64_t convex_area(const Region& region);
 /// area / convex_area, in (0, 1]: 1 for a convex region. HALCON `convexity`. O(R).
 double convexity(const Region& region);
 
-/// How well the rectangle with the same area moments covers the region: 1 - |rectangle xor region| / area, cut at 0;
-/// 1 for rectangles. After HALCON `rectangularity`; here pixels are unit squares, so that pixel boxes give exactly 1.
-/// O(R + height).
+/// How well the rectangle with the region's moments covers it: 1 - |rectangle xor region| / |rectangle|, cut at 0;
+/// 1 for rectangles. After HALCON `rectangularity`, which leaves details open; here pixels are unit squares for the
+/// moments, so that pixel boxes give exactly 1. O(R + height).
 double rectangularity(const Region& region);
 
 }  // namespace tassilo

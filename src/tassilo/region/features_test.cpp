@@ -156,6 +156,25 @@ TEST(Features, OfLinesAndSinglePixelsAreHalconsZeros) {
   EXPECT_NEAR(shape_features(bent).ellipse.rb, 2 * std::sqrt(.1 / 201), 1e-3);
 }
 
+/// The snippet of docs/regions.md, word by word.
+std::vector<PixelPoint> round_things(const Region& red) {
+  std::vector<PixelPoint> centers;
+  for (const Region& part : components(opening(red, rectangle(3, 3)))) {
+    const ShapeFeatures shape = shape_features(part);
+    if (shape.area > 50 && shape.anisometry < 1.5) centers.push_back(shape.center);
+  }
+  return centers;
+}
+
+TEST(Features, FindTheBallAsTheManualSays) {
+  const Region ball = translated(disc(6), {40, 30}), bar = Region::from_box({0, 5, 70, 9});
+  const Region specks = random_region(3, {{0, 0, 80, 50}, .02, 0});
+  const std::vector<PixelPoint> found = round_things(union_of(std::vector{ball, bar, specks}));
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NEAR(found[0].x, 40, .3);
+  EXPECT_NEAR(found[0].y, 30, .3);
+}
+
 TEST(Features, OfNothingAreZero) {
   const ShapeFeatures features = shape_features({});
   EXPECT_EQ(features.area, 0);

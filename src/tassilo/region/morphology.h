@@ -18,10 +18,11 @@ Region rectangle(int width, int height);
 /// Pixels whose centre lies within `radius` of the origin; radius >= 0, so disc(0) is one pixel. [px]
 Region disc(double radius);
 
-/// {p + e : p in region, e in element}. HALCON `minkowski_add1` (with a point-symmetric element `dilation1`),
-/// OpenCV `dilate` with the reflected element.
+/// {p + e : p in region, e in element}, the Minkowski sum. With point-symmetric elements HALCON `dilation1`, OpenCV
+/// `dilate`; with others OpenCV's has the reflected element.
 Region dilation(const Region& region, const Region& element);
-/// {p : p + e in region for all e in element}. HALCON `erosion1`, OpenCV `erode` with border value 0.
+/// {p : p + e in region for all e in element}. With point-symmetric elements HALCON `erosion1`; with any OpenCV `erode`,
+/// border value 0.
 Region erosion(const Region& region, const Region& element);
 /// All places the element can reach inside the region: dilation(erosion(region)). Independent of the origin.
 Region opening(const Region& region, const Region& element);
