@@ -5,9 +5,8 @@
 
 namespace tassilo {
 
-void broken_promise(const char* promise, std::source_location at) {
-  std::fprintf(stderr, "tassilo: broken promise: %s (%s:%u, %s)\n", promise, at.file_name(),
-               static_cast<unsigned>(at.line()), at.function_name());
+void broken_promise(const char* promise, SourcePlace at) {
+  std::fprintf(stderr, "tassilo: broken promise: %s (%s:%d, %s)\n", promise, at.file, at.line, at.function);
   std::abort();
 }
 

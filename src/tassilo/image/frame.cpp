@@ -14,7 +14,7 @@ std::string_view to_string(PixelFormat format) {
     case PixelFormat::yuv420p: return "yuv420p";
     case PixelFormat::nv12: return "nv12";
   }
-  broken_promise("a known pixel format", std::source_location::current());
+  broken_promise("a known pixel format");
 }
 
 std::string_view to_string(ColorRange range) { return range == ColorRange::full ? "full" : "limited"; }
