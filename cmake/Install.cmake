@@ -34,7 +34,7 @@ foreach(target IN LISTS targets)
   install(TARGETS ${target} EXPORT tassilo_${component} COMPONENT ${component}
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(DIRECTORY src/tassilo/${part} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tassilo COMPONENT ${component}
-    FILES_MATCHING PATTERN "*.h" PATTERN internal EXCLUDE)
+    FILES_MATCHING PATTERN "*.h" PATTERN internal EXCLUDE PATTERN "test_*" EXCLUDE)
 endforeach()
 list(REMOVE_DUPLICATES TASSILO_COMPONENTS)
 foreach(component IN LISTS TASSILO_COMPONENTS)

@@ -27,6 +27,8 @@ class CheckFloors(unittest.TestCase):
             "files/camera_file.h": HEADER + '// not YAML::Node; #include "tassilo/app/run.h"\n',
             "files/camera_file.cpp": '#include "tassilo/files/camera_file.h"\n#include <yaml-cpp/yaml.h>\n',
             "evaluate/score.cpp": '#include "tassilo/files/scene_json.h"\n',
+            "source/internal/test_clip.h": HEADER + "#include <gtest/gtest.h>\n",
+            "app/commands.h": HEADER + "#include <CLI/CLI.hpp>\n",
             "app/main.cpp": "#include <CLI/CLI.hpp>\nvoid f() { std::cout << 1; }\n",
         }))
 

@@ -32,7 +32,7 @@ else()
   run("install" ${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix})
 endif()
 
-file(GLOB_RECURSE internal ${prefix}/include/*/internal/* ${prefix}/include/*_test*)
+file(GLOB_RECURSE internal ${prefix}/include/*/internal/* ${prefix}/include/*_test* ${prefix}/include/test_*)
 if(internal)
   message(FATAL_ERROR "installed, but not for users: ${internal}")
 endif()

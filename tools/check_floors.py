@@ -38,7 +38,8 @@ FFMPEG = ["libavformat/", "libavcodec/", "libavutil/", "libswscale/"]
 THIRD_PARTY = {
     "calibrate": ["ceres/", "apriltag/"],
     "overlay": ["cairo"],
-    "files": ["yaml-cpp/", "png.h", "jpeglib.h", "nlohmann/"],
+    "files": ["yaml-cpp/", "png.h", "jpeglib.h", "nlohmann/", *POSIX],
+    "evaluate": ["nlohmann/"],
     "source": [*FFMPEG, *POSIX, "linux/"],
     "record": [*FFMPEG, *POSIX],
     "team": ["dds/", *POSIX],
@@ -46,7 +47,7 @@ THIRD_PARTY = {
     "web": ["boost/", *POSIX],
     "app": ["CLI/", "fmt/", "spdlog/", *POSIX],
 }
-TEST_ONLY = ["gtest/", "gmock/", "opencv2/"]
+TEST_ONLY = ["gtest/", "gmock/", "opencv2/", *POSIX]
 
 # Names of libraries that do I/O; a forward declaration in a public header would let them through without an include.
 IO_TYPES = re.compile(r"\b(AV[A-Z]\w+|SwsContext|cairo_\w+|png_\w+|jpeg_\w+|YAML::\w+|nlohmann::\w+|CLI::\w+|fmt::\w+|"
@@ -69,11 +70,14 @@ def read_source(path, root):
 
 
 def is_test(source):
+    """A test, or a helper of tests: x_test.cpp, test_x.h, test_x.cpp."""
     return source.path.stem.endswith("_test") or source.path.stem.startswith("test_")
 
 
 def is_public(source):
-    return source.path.suffix == ".h" and "internal" not in source.path.parts and not is_test(source)
+    """Installed for users of the library; the program's own headers are not."""
+    return (source.path.suffix == ".h" and source.part != "app" and "internal" not in source.path.parts
+            and not is_test(source))
 
 
 def floor_faults(source):
