@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tassilo/base/error.h"
+#include "tassilo/files/internal/test_message.h"
 #include "tassilo/files/json.h"
 #include "tassilo/files/yaml.h"
 
@@ -11,16 +11,6 @@ namespace tassilo {
 namespace {
 
 using testing::ElementsAre;
-using testing::ThrowsMessage;
-
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "nothing was refused";
-}
 
 TEST(Yaml, ValuesKnowTheirPlaceAndName) {
   const Value root = parse_yaml("robot: {id: 3}\nboxes:\n  - [1, 2]\n  - [3, x]\n", "a.yaml");
@@ -93,8 +83,8 @@ TEST(Value, WrongKindsSayWhatItIsAndMustBe) {
       {[&] { root.list(); }, "a:1:1: is a map, must be a list"},
       {[&] { map.at("list").any_map(); }, "a:1:8: list is a list, must be a map"},
       {[&] { map.at("map").number(); }, "a:1:18: map is a map, must be a finite number"},
-      {[&] { map.at("none").number(); }, "a:1:41: none is empty, must be a finite number"},
-      {[&] { map.at("none").string(); }, "a:1:41: none is empty, must be a text"},
+      {[&] { map.at("none").number(); }, "a:1:35: none is empty, must be a finite number"},
+      {[&] { map.at("none").string(); }, "a:1:35: none is empty, must be a text"},
       {[&] { map.at("list").string(); }, "a:1:8: list is a list, must be a text"},
       {[&] { map.at("list").integer(); }, "a:1:8: list is a list, must be a whole number"},
       {[&] { map.at("list").boolean(); }, "a:1:8: list is a list, must be true or false"},

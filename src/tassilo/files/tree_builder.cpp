@@ -57,6 +57,10 @@ void TreeBuilder::value(Node node) {
     levels_.back().key_pending = true;
     return;
   }
+  if (node.kind == Node::Kind::null && !levels_.empty() && levels_.back().node.kind == Node::Kind::map) {
+    node.line = levels_.back().node.keys.back().line;  // nothing stands nowhere: its key is the place to look at
+    node.column = levels_.back().node.keys.back().column;
+  }
   attach(std::move(node));
 }
 

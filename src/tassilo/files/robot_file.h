@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "tassilo/files/setting.h"
+#include "tassilo/scene/scene.h"
+
+namespace tassilo {
+
+/// Where the robot stands at the start, field frame, with one standard deviation each.
+struct StartPose {
+  double x = 0, y = 0, theta = 0;            ///< [m, rad]
+  double sigma_xy = 0.1, sigma_theta = 0.1;  ///< [m, rad], > 0
+};
+
+/// What robot.yaml says; every key is optional. Paths are resolved: relative ones are relative to the file.
+struct RobotFile {
+  int id = 0;                                   ///< 0..255
+  Team team = Team::unknown;                    ///< Our own color.
+  std::optional<std::filesystem::path> camera;  ///< Without it, everything stays in the image.
+  std::optional<std::filesystem::path> colors;
+  std::optional<std::string> field;  ///< A shipped name or a resolved path, as read_field takes it.
+  std::optional<StartPose> start_pose;
+  /// The keys below `vision:` in their order, for whoever knows what they mean.
+  std::vector<std::pair<std::string, Setting>> vision;
+};
+
+/// Does not open the files it names. Throws Error with file, line and column.
+RobotFile read_robot(const std::filesystem::path& file);
+RobotFile robot_from_yaml(std::string_view text, const std::filesystem::path& file);
+
+}  // namespace tassilo
