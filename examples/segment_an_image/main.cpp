@@ -17,7 +17,7 @@ struct YuvColor {
 constexpr YuvColor kGreen{90, 100, 90}, kRed{110, 90, 200};
 constexpr int kWidth = 160, kHeight = 120;
 
-/// Green everywhere, and a red disc with pixel-exact edge; chroma is per pixel pair.
+/// Green everywhere, and a red disc. Two pixels side by side share one chroma sample, here that of the right one.
 Frame draw_disc(double center_x, double center_y, double radius) {
   FrameBuffer buffer = make_frame_buffer(PixelFormat::yuv422p, kWidth, kHeight, ColorRange::limited);
   for (int r = 0; r < kHeight; ++r) {
@@ -49,7 +49,7 @@ ColorTable two_colors() {
 }  // namespace
 
 int main() {
-  const Frame frame = draw_disc(80, 70, 10);
+  const Frame frame = draw_disc(60, 70, 10);
   const Segmentation segmentation = segment(frame.view, Classifier(two_colors()));
 
   for (const ColorClass color : kColorClasses) {
@@ -64,7 +64,7 @@ int main() {
   const CameraModel model{"example", kWidth, kHeight, 120, 120, 79.5, 59.5, PlumbBob{}};
   const MountedCamera camera(model, {.z = 0.5, .pitch = 0.3});
   const PixelBox box = bounding_box(segmentation.of(ColorClass::red));
-  if (const auto point = camera.floor_point({80, static_cast<double>(box.y1 - 1)})) {
+  if (const auto point = camera.floor_point({60, static_cast<double>(box.y1 - 1)})) {
     std::printf("its foot is %.2f m ahead and %.2f m to the left\n", point->x, point->y);
   }
   return 0;
