@@ -150,6 +150,15 @@ TEST(Features, OfLinesAndSinglePixelsAreHalconsZeros) {
     EXPECT_EQ(features.structure_factor, 0);
     EXPECT_EQ(convexity(line), 1);
   }
+  // Lines of every slope and length: rounding must not give them a width.
+  for (int step = 1; step < 40; ++step)
+    for (int count = 2; count < 120; count += 7) {
+      std::vector<PixelRun> line;
+      for (int k = 0; k < count; ++k)
+        line.push_back({static_cast<std::int16_t>(k), static_cast<std::int16_t>(step * k),
+                        static_cast<std::int16_t>(step * k + 1)});
+      EXPECT_EQ(shape_features(Region::from_runs(line)).ellipse.rb, 0) << "step " << step << ", count " << count;
+    }
   EXPECT_EQ(shape_features(rectangle(1, 1)).circularity, 1);
   // One pixel of 201 beside the line, at distance 1 / sqrt 10.
   const Region bent = union_of(Region::from_runs(slanted), Region::from_runs({{100, 301, 302}}));

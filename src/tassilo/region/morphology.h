@@ -21,8 +21,8 @@ Region disc(double radius);
 /// {p + e : p in region, e in element}, the Minkowski sum. With point-symmetric elements HALCON `dilation1`, OpenCV
 /// `dilate`; with others OpenCV's has the reflected element.
 Region dilation(const Region& region, const Region& element);
-/// {p : p + e in region for all e in element}. With point-symmetric elements HALCON `erosion1`; with any OpenCV `erode`,
-/// border value 0.
+/// {p : p + e in region for all e in element}. With point-symmetric elements HALCON `erosion1`; with any OpenCV
+/// `erode`, border value 0.
 Region erosion(const Region& region, const Region& element);
 /// All places the element can reach inside the region: dilation(erosion(region)). Independent of the origin.
 Region opening(const Region& region, const Region& element);
