@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "tassilo/region/internal/random_region.h"
+#include "tassilo/region/internal/test_regions.h"
 
 namespace tassilo {
 namespace {

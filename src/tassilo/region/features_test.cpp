@@ -11,7 +11,7 @@
 
 #include "tassilo/region/algebra.h"
 #include "tassilo/region/fill.h"
-#include "tassilo/region/internal/random_region.h"
+#include "tassilo/region/internal/test_regions.h"
 #include "tassilo/region/morphology.h"
 
 namespace tassilo {

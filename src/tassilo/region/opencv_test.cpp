@@ -10,7 +10,7 @@
 
 #include "tassilo/region/algebra.h"
 #include "tassilo/region/features.h"
-#include "tassilo/region/internal/random_region.h"
+#include "tassilo/region/internal/test_regions.h"
 #include "tassilo/region/morphology.h"
 #include "tassilo/region/raster.h"
 

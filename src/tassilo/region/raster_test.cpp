@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tassilo/region/algebra.h"
-#include "tassilo/region/internal/random_region.h"
+#include "tassilo/region/internal/test_regions.h"
 
 namespace tassilo {
 namespace {
