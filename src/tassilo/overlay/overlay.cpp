@@ -1,0 +1,189 @@
+#include "tassilo/overlay/overlay.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "tassilo/base/contract.h"
+#include "tassilo/base/error.h"
+#include "tassilo/overlay/internal/bird_view.h"
+#include "tassilo/overlay/internal/canvas.h"
+#include "tassilo/overlay/internal/floor_view.h"
+#include "tassilo/overlay/internal/label_layout.h"
+#include "tassilo/overlay/internal/text.h"
+
+namespace tassilo {
+namespace {
+
+constexpr int kReadableWidth = 768;  // [px]
+constexpr int kLargestScale = 16;
+constexpr int kLargestSide = 32767;  // of a Cairo surface [px]
+
+int even(double value) { return 2 * static_cast<int>(std::lround(value / 2)); }
+
+/// Where everything goes; from the frame's size and the options only.
+struct Layout {
+  int scale = 1;
+  Rect image, status, bird;
+  int width = 0, height = 0;
+  double text = 12;  ///< Text size. [px]
+};
+
+Layout make_layout(const FrameView& frame, const OverlayOptions& options) {
+  Layout layout;
+  const int width = std::max(frame.width(), 1);
+  layout.scale = options.scale > 0 ? options.scale : std::min(kLargestScale, (kReadableWidth + width - 1) / width);
+  layout.image = {0, 0, static_cast<double>(frame.width() * layout.scale),
+                  static_cast<double>(frame.height() * layout.scale)};
+  layout.text = std::clamp(layout.image.width / 64, 10.0, 30.0);
+  const double height = layout.image.height;
+  double right = layout.image.width;
+  if (options.camera != nullptr && options.bird_view) {
+    layout.bird = {right, 0, std::round(std::clamp(.9 * height, .3 * right, .4 * right)), height};
+    right = layout.bird.right();
+  }
+  const double bar = std::round(2.1 * layout.text);
+  layout.width = even(std::ceil(right));
+  layout.height = even(height + bar);
+  layout.status = {0, height, static_cast<double>(layout.width), layout.height - height};
+  if (layout.bird.width > 0) layout.bird.width = layout.width - layout.bird.x;
+  if (layout.width > kLargestSide || layout.height > kLargestSide)
+    throw Error("overlay", "is " + std::to_string(layout.width) + "x" + std::to_string(layout.height) +
+                               " px, must be at most " + std::to_string(kLargestSide) + " in both directions");
+  return layout;
+}
+
+/// Draws onto the enlarged image.
+class ImageDrawing {
+ public:
+  ImageDrawing(Canvas& canvas, const Layout& layout)
+      : canvas_(canvas), layout_(layout), unit_(layout.text / 12), labels_(label_bounds(layout)) {}
+
+  void draw(const Scene& scene, const MountedCamera* camera) {
+    if (camera != nullptr && scene.free_space)
+      free_space(project_free_space(*scene.free_space, *camera, layout_.scale));
+    for (const LineSeen& line : scene.lines) {
+      const CanvasPoint p = on_canvas(line.image_p, layout_.scale), q = on_canvas(line.image_q, layout_.scale);
+      canvas_.polyline(std::vector{p, q}, {.ink = line_ink(line.kind), .width = 2 * unit_, .cased = true});
+    }
+    for (const Goal& goal : scene.goals)
+      box(goal.box, {.ink = goal_ink(goal.color), .width = 2 * unit_, .cased = true});
+    for (const RobotSeen& robot : scene.robots)
+      box(robot.box, {.ink = team_ink(robot.team), .width = 2 * unit_, .cased = true});
+    for (std::size_t i = scene.balls.size(); i-- > 0;) ball(scene.balls[i], i == 0);
+
+    for (const Ball& ball : scene.balls) {
+      const bool is_best = &ball == &scene.balls.front();
+      std::string name = is_best ? "ball" : "";
+      if (is_best && ball.floor) name.append(" ").append(meters(norm(ball.floor->position.mean)));
+      label(ball.box, joined({name, percent(ball.confidence)}), kBallInk);
+    }
+    for (const RobotSeen& robot : scene.robots) {
+      std::string name(robot.team == Team::unknown ? "robot" : to_string(robot.team));
+      if (robot.floor) name.append(" ").append(meters(norm(robot.floor->nearest.mean)));
+      label(robot.box, name, team_ink(robot.team));
+    }
+    for (const Goal& goal : scene.goals) {
+      std::string name(to_string(goal.color));
+      name += " goal";
+      if (goal.position) name.append(" ").append(meters(norm(*goal.position)));
+      label(goal.box, joined({name, goal.bearing ? bearing_text(*goal.bearing) : ""}), goal_ink(goal.color));
+    }
+  }
+
+ private:
+  static Rect label_bounds(const Layout& layout) {
+    const double margin = layout.text / 4;
+    return {margin, margin, layout.image.width - 2 * margin, layout.image.height - 2 * margin};
+  }
+
+  Rect on_image(const PixelBox& box) const {
+    const double s = layout_.scale;
+    return {box.x0 * s, box.y0 * s, box.width() * s, box.height() * s};
+  }
+
+  void free_space(const FreeSpaceInImage& space) {
+    canvas_.fill_polygons(space.floor, kFreeInk.with_alpha(.22));
+    for (const auto& edge : space.open) canvas_.polyline(edge, {.ink = kFreeInk.with_alpha(.75), .width = 1.4 * unit_});
+    for (const auto& edge : space.blocked)
+      canvas_.polyline(edge, {.ink = kBlockedInk, .width = 2.4 * unit_, .cased = true});
+  }
+
+  void box(const PixelBox& pixels, const Pen& pen) {
+    const Rect rect = on_image(pixels);
+    labels_.keep_clear(rect);
+    canvas_.stroke_rounded(rect, 3 * unit_, pen);
+  }
+
+  void ball(const Ball& ball, bool is_best) {
+    const Ink color = kBallInk.with_alpha(is_best ? 1 : .6);
+    const CanvasPoint center = on_canvas(ball.center, layout_.scale);
+    box(ball.box, {.ink = color, .width = (is_best ? 2 : 1.2) * unit_, .cased = is_best});
+    if (!is_best) return;
+    canvas_.stroke_circle(center, ball.radius_px * layout_.scale,
+                          {.ink = kTextInk.with_alpha(.9), .width = 1.2 * unit_});
+  }
+
+  void label(const PixelBox& pixels, const std::string& words, Ink color) {
+    const TextStyle style{.size = layout_.text, .ink = kTextInk, .weight = TextWeight::bold};
+    const double dot = .28 * style.size, padding = .4 * style.size;
+    const double height = 1.45 * style.size;
+    const double width = canvas_.text_width(words, style) + 3 * padding + 2 * dot;
+    const Rect place = labels_.place(on_image(pixels), width, height);
+    const double middle = place.y + height / 2;
+    canvas_.fill_rounded(place, 4 * unit_, kPanelInk.with_alpha(.72));
+    canvas_.fill_circle({place.x + padding + dot, middle}, dot, color);
+    canvas_.text(words, {place.x + 2 * padding + 2 * dot, middle}, TextAnchor::left, style);
+  }
+
+  Canvas& canvas_;
+  const Layout& layout_;
+  double unit_;  ///< Width of strokes relative to the usual picture. [1]
+  LabelLayout labels_;
+};
+
+void draw_status(Canvas& canvas, const Layout& layout, const Scene& scene) {
+  canvas.clipped(layout.status, [&] {
+    canvas.fill_rect(layout.status, kPanelInk);
+    const double middle = layout.status.y + layout.status.height / 2, margin = layout.text;
+    const TextStyle strong{.size = layout.text, .ink = kTextInk, .weight = TextWeight::bold};
+    const TextStyle quiet{.size = layout.text, .ink = kQuietTextInk};
+    double x = margin;
+    const auto word = [&](const std::string& text, const TextStyle& style) {
+      canvas.text(text, {x, middle}, TextAnchor::left, style);
+      x += canvas.text_width(text, style) + 1.4 * layout.text;
+    };
+    word("frame " + std::to_string(scene.frame), strong);
+    word(fixed(scene.t, 3) + " s", quiet);
+    if (!scene.image.empty()) word(scene.image, quiet);
+    if (scene.timing.empty()) return;
+    canvas.text(fixed(scene.timing.back().ms, 2) + " ms", {layout.status.right() - margin, middle}, TextAnchor::right,
+                strong);
+  });
+}
+
+}  // namespace
+
+void OverlayOptions::check() const {
+  if (scale < 0 || scale > kLargestScale)
+    throw Error("overlay.scale", "is " + std::to_string(scale) + ", must be 0.." + std::to_string(kLargestScale));
+  if (!(bird_range > 0) || !std::isfinite(bird_range))
+    throw Error("overlay.bird_range", "is " + std::to_string(bird_range) + ", must be > 0");
+}
+
+Picture draw_overlay(const FrameView& frame, ColorRange range, const Scene& scene, const OverlayOptions& options) {
+  options.check();
+  const auto pixels = static_cast<std::size_t>(frame.width()) * static_cast<std::size_t>(frame.height());
+  expects(options.labels.empty() || options.labels.size() == pixels, "draw_overlay: one label per pixel");
+  const Layout layout = make_layout(frame, options);
+  Canvas canvas(layout.width, layout.height, kPanelInk);
+  canvas.image(picture_from_frame(frame, range), layout.image);
+  if (!options.labels.empty()) canvas.label_map(options.labels, frame.width(), layout.image);
+  canvas.clipped(layout.image, [&] { ImageDrawing(canvas, layout).draw(scene, options.camera); });
+  if (layout.bird.width > 0) draw_bird_view(canvas, layout.bird, scene, options.bird_range);
+  draw_status(canvas, layout, scene);
+  return canvas.picture();
+}
+
+}  // namespace tassilo

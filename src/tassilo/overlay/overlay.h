@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "tassilo/camera/mount.h"
+#include "tassilo/image/frame.h"
+#include "tassilo/overlay/picture.h"
+#include "tassilo/scene/scene.h"
+
+namespace tassilo {
+
+struct OverlayOptions {
+  const MountedCamera* camera = nullptr;      ///< Borrowed. Without it nothing is drawn that lies on the floor.
+  std::span<const std::uint8_t> labels = {};  ///< Color classes 0..8 of all pixels, row by row; empty: none.
+  int scale = 0;          ///< Picture pixels an image pixel, 1..16; 0: the smallest that makes the image 768 wide. [1]
+  bool bird_view = true;  ///< The view from above beside the image; there is none without a camera.
+  double bird_range = 6;  ///< The view from above reaches at least so far ahead of the robot. [m], > 0
+  /// Throws Error naming the first value out of range.
+  void check() const;
+};
+
+/// A frame with what was seen in it, for people.
+///
+/// On the image, enlarged by a whole number: the free floor in green with a red edge where something blocks it, lines
+/// (white; field boundary violet), goals, robots and balls as boxes in their color with distance, bearing or
+/// confidence; further ball hypotheses thinner. Below it a line with frame number, time and total processing time. View
+/// from above: rings of 1 m around the robot (x up, y left), free space (unseen sectors grey), ball with 2-sigma
+/// ellipse and bracket from near to far, robots, goals, lines. The size depends on the frame's size and the options
+/// only, so that pictures of a sequence make a video; both sides are even. `options.labels` has width * height entries
+/// or none. A few milliseconds; safe from any thread.
+Picture draw_overlay(const FrameView& frame, ColorRange range, const Scene& scene, const OverlayOptions& options = {});
+
+}  // namespace tassilo
