@@ -162,11 +162,13 @@ class VideoReader final : public FrameReader {
     if (missing_bytes_ > 0) return "cannot be read" + cut_remark();
     const std::string& container_error = log.container_error().empty() ? container_error_ : log.container_error();
     if (!container_error.empty()) return "cannot be read: " + container_error;
-    const AVStream& stream = *input_->streams[stream_];
-    const bool counts_frames = container_.starts_with("mov,mp4");
-    if (counts_frames && packets_ < stream.nb_frames)
-      return "cannot be read: the file holds " + std::to_string(packets_) + " of " + std::to_string(stream.nb_frames) +
-             " frames";
+    if (container_.starts_with("mov,mp4")) {
+      // What the header lists after edit lists have been applied, which may hide pictures on purpose.
+      const int listed = avformat_index_get_entries_count(input_->streams[stream_]);
+      if (packets_ < listed)
+        return "cannot be read: the file holds " + std::to_string(packets_) + " of " + std::to_string(listed) +
+               " frames";
+    }
     if (container_ == "yuv4mpegpipe" && is_y4m_cut()) return "is cut short";
     if (jpeg_rest_ > 0) return "is cut short";
     if (ends_early()) {
