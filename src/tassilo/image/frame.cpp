@@ -1,5 +1,6 @@
 #include "tassilo/image/frame.h"
 
+#include <algorithm>
 #include <vector>
 
 #include "tassilo/base/contract.h"
@@ -8,11 +9,16 @@ namespace tassilo {
 
 std::string_view to_string(PixelFormat format) {
   switch (format) {
-    case PixelFormat::yuyv422: return "yuyv422";
-    case PixelFormat::uyvy422: return "uyvy422";
-    case PixelFormat::yuv422p: return "yuv422p";
-    case PixelFormat::yuv420p: return "yuv420p";
-    case PixelFormat::nv12: return "nv12";
+    case PixelFormat::yuyv422:
+      return "yuyv422";
+    case PixelFormat::uyvy422:
+      return "uyvy422";
+    case PixelFormat::yuv422p:
+      return "yuv422p";
+    case PixelFormat::yuv420p:
+      return "yuv420p";
+    case PixelFormat::nv12:
+      return "nv12";
   }
   broken_promise("a known pixel format");
 }
@@ -77,16 +83,17 @@ FrameBuffer make_frame_buffer(PixelFormat format, int width, int height, ColorRa
   }
   std::size_t size = 0;
   for (int p = 0; p < 3; ++p) size += static_cast<std::size_t>(buffer.strides[p] * rows[p]);
-  auto bytes = std::make_shared<std::vector<std::uint8_t>>(size);
+  auto bytes =
+      std::make_shared<std::vector<std::uint8_t>>(std::max(size, std::size_t{4}));  // addresses, also of no pixels
   std::uint8_t* next = bytes->data();
   for (int p = 0; p < 3; ++p) {
     buffer.planes[p] = next;
     next += buffer.strides[p] * rows[p];
   }
-  buffer.frame.view =
-      is_packed ? FrameView::packed(format, width, height, buffer.planes[0], buffer.strides[0])
-                : FrameView::planar(format, width, height, {buffer.planes[0], buffer.planes[1], buffer.planes[2]},
-                                    buffer.strides);
+  buffer.frame.view = is_packed
+                          ? FrameView::packed(format, width, height, buffer.planes[0], buffer.strides[0])
+                          : FrameView::planar(format, width, height,
+                                              {buffer.planes[0], buffer.planes[1], buffer.planes[2]}, buffer.strides);
   buffer.frame.range = range;
   buffer.frame.storage = std::move(bytes);
   return buffer;
