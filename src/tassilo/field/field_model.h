@@ -39,7 +39,7 @@ struct FieldModel {
   struct Walls {
     std::string color = "white";  ///< A color class name.
     double height = 0;
-    Interval x, y;                ///< Inner faces.
+    Interval x, y;  ///< Inner faces.
     friend bool operator==(const Walls&, const Walls&) = default;
   };
   struct Ball {
@@ -55,8 +55,8 @@ struct FieldModel {
   };
 
   std::string name;
-  double length = 0;      ///< Between the outer edges of the goal lines (inner wall faces where there are walls).
-  double width = 0;       ///< Likewise for the touch lines.
+  double length = 0;  ///< Between the outer edges of the goal lines (inner wall faces where there are walls).
+  double width = 0;   ///< Likewise for the touch lines.
   double line_width = 0;
   bool halfway_line = false;
   bool touchlines = false;
@@ -70,7 +70,8 @@ struct FieldModel {
   Robots robots;
 
   friend bool operator==(const FieldModel&, const FieldModel&) = default;
-  /// Throws Error naming the first value out of range (lengths finite and > 0, or >= 0 where 0 means none; intervals ordered).
+  /// Throws Error naming the first value out of range (lengths finite and > 0, or >= 0 where 0 means none; intervals
+  /// ordered).
   void check() const;
 };
 

@@ -124,10 +124,8 @@ std::string colors_yaml(const ColorsFile& colors, const std::string& png_name) {
   return out.str();
 }
 
-}  // namespace
-
-ColorsFile read_colors(const fs::path& file) {
-  const Map map = read_yaml(file).map({"table", "range", "brightness", "priority", "trained_from"});
+ColorsFile colors_of(const Value& root, const fs::path& file) {
+  const Map map = root.map({"table", "range", "brightness", "priority", "trained_from"});
   ColorsFile colors;
   colors.table.range = map.at("range").choice(kRanges) == 0 ? ColorRange::limited : ColorRange::full;
   read_brightness(map.at("brightness"), colors.table);
@@ -136,6 +134,13 @@ ColorsFile read_colors(const fs::path& file) {
   read_chroma(map.at("table"), file.parent_path(), colors.table);
   colors.table = checked(std::move(colors.table), file.string());
   return colors;
+}
+
+}  // namespace
+
+ColorsFile read_colors(const fs::path& file) { return colors_of(read_yaml(file), file); }
+ColorsFile colors_from_yaml(std::string_view text, const fs::path& file) {
+  return colors_of(parse_yaml(text, file.string()), file);
 }
 
 void write_colors(const fs::path& file, const ColorsFile& colors) {

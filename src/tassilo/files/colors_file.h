@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "tassilo/color/color_table.h"
 
@@ -34,6 +35,8 @@ struct ColorsFile {
 /// Throws Error with file, line and column; also when the PNG has cells of a class without a `brightness` entry.
 /// A class without an entry gets an empty interval.
 ColorsFile read_colors(const std::filesystem::path& file);
+/// The same for a text in place of the content of `file`; the PNG is looked for beside `file`.
+ColorsFile colors_from_yaml(std::string_view text, const std::filesystem::path& file);
 
 /// Writes the table beside `file` as STEM.png, then `file`, each atomically. Whoever watches `file` finds the PNG
 /// complete. Reading gives the same table; all empty brightness intervals read back as one.

@@ -86,14 +86,17 @@ std::vector<TrainingSample> samples_from_yaml(std::string_view text, const fs::p
   return samples_of(parse_yaml(text, file.string()), file.parent_path());
 }
 
-void write_samples(const fs::path& file, const std::vector<TrainingSample>& samples) {
-  const fs::path folder = file.parent_path();
+std::string samples_yaml(const std::vector<TrainingSample>& samples, const fs::path& folder) {
+  if (samples.empty()) return "[]\n";
   std::ostringstream out;
-  if (samples.empty()) out << "[]\n";
   for (const TrainingSample& sample : samples)
     out << "- {image: " << yaml_path(sample.image, folder) << ", frame: " << sample.frame
         << ", class: " << to_string(sample.color) << ", " << std::visit(ShapeYaml{folder}, sample.shape) << "}\n";
-  write_atomically(file, out.str());
+  return out.str();
+}
+
+void write_samples(const fs::path& file, const std::vector<TrainingSample>& samples) {
+  write_atomically(file, samples_yaml(samples, file.parent_path()));
 }
 
 }  // namespace tassilo

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
@@ -34,6 +35,8 @@ struct TrainingSample {
 /// In the order of the file. Does not open the images. Throws Error with file, line and column.
 std::vector<TrainingSample> read_samples(const std::filesystem::path& file);
 std::vector<TrainingSample> samples_from_yaml(std::string_view text, const std::filesystem::path& file);
+/// The text of such a file in `folder`; paths in it are relative to the folder.
+std::string samples_yaml(const std::vector<TrainingSample>& samples, const std::filesystem::path& folder);
 /// Written atomically, paths relative to the file's folder.
 void write_samples(const std::filesystem::path& file, const std::vector<TrainingSample>& samples);
 
