@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <cstdio>
 #include <string_view>
 
@@ -33,11 +34,11 @@ std::string padded(const std::string& text, std::size_t width, bool right = fals
   return right ? fill + text : text + fill;
 }
 
-/// Rows of cells in columns; the first column and columns named in `left` are aligned left.
+/// Rows of cells in columns; those of [right_from, right_to) are aligned right.
 class Columns {
  public:
   void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
-  std::string text(std::size_t left_from = SIZE_MAX) const {
+  std::string text(std::size_t right_from, std::size_t right_to) const {
     std::vector<std::size_t> widths;
     for (const auto& row : rows_) {
       widths.resize(std::max(widths.size(), row.size()));
@@ -47,7 +48,7 @@ class Columns {
     for (const auto& row : rows_) {
       std::string line;
       for (std::size_t i = 0; i < row.size(); ++i)
-        line += (i ? "  " : "") + padded(row[i], widths[i], i > 0 && i < left_from);
+        line += (i ? "  " : "") + padded(row[i], widths[i], i >= right_from && i < right_to);
       line.erase(line.find_last_not_of(' ') + 1);
       out += line + "\n";
     }
@@ -57,6 +58,7 @@ class Columns {
  private:
   std::vector<std::vector<std::string>> rows_;
 };
+constexpr std::size_t kToTheEnd = SIZE_MAX;
 
 std::string rest_of(const Spread& s, auto text) {
   return s.count == 0 ? "" : "median; 90 % below " + text(s.p90) + ", at most " + text(s.max);
@@ -148,7 +150,7 @@ std::string sequence_text(const SequenceScore& s) {
   add_robots(out, s.robots);
   add_free_space(out, s.free_space);
   add_timing(out, s.timing_ms);
-  std::string text = std::to_string(s.frames) + " frames\n" + out.text(3);
+  std::string text = std::to_string(s.frames) + " frames\n" + out.text(2, 3);
   for (const std::string& note : s.notes) text += "note: " + note + "\n";
   return text;
 }
@@ -176,7 +178,7 @@ std::string rows_text(const Evaluation& evaluation) {
            "cover", "ms"});
   for (const auto& [name, score] : evaluation.sequences) add_row(out, name, score);
   add_row(out, "all", *evaluation.overall);
-  return out.text() +
+  return out.text(1, kToTheEnd) +
          "shares in %; r/p: recall/precision; error: of the distance; m: nearest point; within: distance within "
          "near..far\n";
 }
@@ -211,7 +213,7 @@ std::string colors_text(const Evaluation& evaluation) {
       row.push_back(recall_precision(s.mean_recall, s.mean_precision));
       rows.add(std::move(row));
     }
-    text += rows.text();
+    text += rows.text(1, kToTheEnd);
   }
   const ColorScore& all = *evaluation.colors;
   Columns out;
@@ -224,7 +226,7 @@ std::string colors_text(const Evaluation& evaluation) {
   out.add({"mean of " + std::to_string(all.mean_over), "", percent(all.mean_recall), percent(all.mean_precision),
            "accuracy " + percent(all.accuracy) + ", " + std::to_string(all.maps) + " label maps" +
                (all.missing ? ", missing: " + std::to_string(all.missing) : "")});
-  return text + out.text(4);
+  return text + out.text(1, 4);
 }
 
 std::string place_text(const BallImageScore::Place& place) {
@@ -242,7 +244,7 @@ std::string balls_text(const BallImageScore& s) {
            of(s.reported_best, "best balls; all ") + percent(s.precision_all) + " " + of(s.reported, "balls")});
   out.add({"", "missed", std::to_string(s.missed.size()), ""});
   out.add({"", "false", std::to_string(s.wrong.size()), ""});
-  std::string text = out.text(3);
+  std::string text = out.text(2, 3);
   for (const auto& place : s.missed) text += "missed: " + place_text(place) + "\n";
   for (const auto& place : s.wrong) text += (place.best ? "false, as best: " : "false: ") + place_text(place) + "\n";
   for (const std::string& image : s.missing) text += "note: no scene line for " + image + ", counted as nothing seen\n";
@@ -257,7 +259,7 @@ std::string poses_text(const Named<PoseImageScore>& poses) {
     out.add({quality, std::to_string(s.images), std::to_string(s.images_with_pose), std::to_string(s.draws),
              std::to_string(s.poses), fixed(s.position_m.median, 3), fixed(s.position_m.p90, 3),
              fixed(s.heading_deg.median, 2), fixed(s.heading_deg.p90, 2), percent(s.wrong)});
-  return out.text();
+  return out.text(1, kToTheEnd);
 }
 
 }  // namespace
