@@ -1,4 +1,4 @@
-# cmake -P: the example builds and runs against an installed copy.
+# cmake -P: the example, and a user of all components, build and run against an installed copy.
 #   MODE=installed  install the build that runs this test, everything in it
 #   MODE=core_only  configure, build and install the core alone, with every optional dependency hidden
 # SOURCE, BUILD: of the project; WORK: a folder of this test; GENERATOR, COMPILER, LAUNCHER, FLAGS: as the project was built.
@@ -15,7 +15,7 @@ function(run what)
 endfunction()
 
 set(prefix ${WORK}/prefix)
-file(REMOVE_RECURSE ${prefix} ${WORK}/example)
+file(REMOVE_RECURSE ${prefix} ${WORK}/segment_an_image ${WORK}/package_user)
 set(toolchain -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER})
 
 if(MODE STREQUAL core_only)
@@ -32,17 +32,28 @@ else()
   run("install" ${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix})
 endif()
 
-file(GLOB_RECURSE internal ${prefix}/include/*/internal/* ${prefix}/include/*_test* ${prefix}/include/test_*)
+file(GLOB_RECURSE internal ${prefix}/include/*)
+list(FILTER internal INCLUDE REGEX "/internal/|_test|/test_")
 if(internal)
   message(FATAL_ERROR "installed, but not for users: ${internal}")
 endif()
 
-run("configure example" ${CMAKE_COMMAND} -S ${SOURCE}/examples/segment_an_image -B ${WORK}/example ${toolchain}
-  -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS=${FLAGS} -DCMAKE_PREFIX_PATH=${prefix})
-run("build example" ${CMAKE_COMMAND} --build ${WORK}/example)
-run("run example" ${WORK}/example/segment_an_image)
-if(NOT output MATCHES "red: area 316 px")
+# build_and_run(folder program expected): against the installed copy; the program's output matches expected.
+function(build_and_run folder program expected)
+  run("configure ${program}" ${CMAKE_COMMAND} -S ${SOURCE}/${folder} -B ${WORK}/${program} ${toolchain}
+    -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS=${FLAGS} -DCMAKE_PREFIX_PATH=${prefix})
+  run("build ${program}" ${CMAKE_COMMAND} --build ${WORK}/${program})
+  run("run ${program}" ${WORK}/${program}/${program})
   message("${output}")
-  message(FATAL_ERROR "the example does not say what it must, see above")
+  if(NOT output MATCHES "${expected}")
+    message(FATAL_ERROR "${program} does not say what it must: ${expected}")
+  endif()
+endfunction()
+
+build_and_run(examples/segment_an_image segment_an_image "red: area 316 px")
+if(MODE STREQUAL installed)
+  build_and_run(tests/package package_user "msl98 is 8.22 m long\n.*no such file.mkv")
+  if(EXISTS ${prefix}/bin/tassilo)
+    run("run the installed program" ${prefix}/bin/tassilo --version)
+  endif()
 endif()
-message(STATUS "${output}")
