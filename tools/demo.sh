@@ -27,7 +27,7 @@ say "compared with the truth of the recording"
 
 cat <<EOF
 
-The annotated video:   $out/overlay.mkv     (ffplay $out/overlay.mkv, or any player)
+The annotated video:      $out/overlay.mkv    (ffplay $out/overlay.mkv, or any player)
 One line of JSON a frame: $out/scenes.jsonl
 Next: the five-minute tour in README.md, on your own camera or video.
 EOF
