@@ -1,5 +1,6 @@
 #include "tassilo/files/text.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
