@@ -18,18 +18,18 @@ struct BrightnessInterval {
 
 /// Order in which classes win where several claim the same (Y, U, V).
 using ClassPriority = std::array<ColorClass, kColorClassCount>;
-inline constexpr ClassPriority kDefaultPriority{ColorClass::red,     ColorClass::yellow, ColorClass::blue,
-                                                ColorClass::cyan,    ColorClass::magenta, ColorClass::green,
-                                                ColorClass::white,   ColorClass::black};
+inline constexpr ClassPriority kDefaultPriority{ColorClass::red,   ColorClass::yellow,  ColorClass::blue,
+                                                ColorClass::cyan,  ColorClass::magenta, ColorClass::green,
+                                                ColorClass::white, ColorClass::black};
 
 /// Which colors are which class: a plain value, replaced as a whole between two frames.
 ///
 /// A pixel (Y, U, V) belongs to class k when cell (U, V) has the class's bit and Y lies in its brightness interval;
 /// of several such classes the first in `priority` wins.
 struct ColorTable {
-  std::array<ClassBits, 256 * 256> chroma{};  ///< chroma[V * 256 + U]
+  std::array<ClassBits, 256 * 256> chroma{};                      ///< chroma[V * 256 + U]
   std::array<BrightnessInterval, kColorClassCount> brightness{};  ///< by class_index
-  ColorRange range = ColorRange::limited;     ///< The quantization the table was trained for.
+  ColorRange range = ColorRange::limited;                         ///< The quantization the table was trained for.
   ClassPriority priority = kDefaultPriority;
 
   ClassBits& cell(int u, int v) { return chroma[static_cast<std::size_t>(v * 256 + u)]; }

@@ -1,0 +1,69 @@
+#include "tassilo/app/run_summary.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+namespace tassilo {
+namespace {
+
+double quantile(std::vector<double> values, double q) {
+  const auto at = static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1) + 0.5);
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return values[static_cast<std::size_t>(at)];
+}
+
+}  // namespace
+
+RunSummary::Count& RunSummary::count_of(const std::string& kind) {
+  const auto it = std::ranges::find(seen_, kind, &std::pair<std::string, Count>::first);
+  return it != seen_.end() ? it->second : seen_.emplace_back(kind, Count{}).second;
+}
+
+void RunSummary::add(const Scene& scene) {
+  if (frames_ == 0) first_index_ = scene.frame;
+  last_index_ = scene.frame;
+  ++frames_;
+  const auto count = [&](const std::string& kind, std::size_t objects) {
+    Count& total = count_of(kind);
+    total.frames += objects > 0;
+    total.objects += static_cast<std::int64_t>(objects);
+  };
+  const auto goals = [&](GoalColor color) {
+    return static_cast<std::size_t>(std::ranges::count(scene.goals, color, &Goal::color));
+  };
+  const auto robots = [&](Team team) {
+    return static_cast<std::size_t>(std::ranges::count(scene.robots, team, &RobotSeen::team));
+  };
+  count("ball", scene.balls.size());
+  count("yellow goal", goals(GoalColor::yellow));
+  count("blue goal", goals(GoalColor::blue));
+  count("cyan robot", robots(Team::cyan));
+  count("magenta robot", robots(Team::magenta));
+  count("other robot", robots(Team::unknown));
+  count("line", scene.lines.size());
+  count("center circle", scene.circles.size());
+  for (const StageTime& time : scene.timing) {
+    auto it = std::ranges::find(times_, time.stage, &std::pair<std::string, std::vector<double>>::first);
+    if (it == times_.end()) it = times_.insert(times_.end(), {time.stage, {}});
+    it->second.push_back(time.ms);
+  }
+}
+
+std::string RunSummary::text(double seconds) const {
+  std::string out = fmt::format("\n{} frames in {:.2f} s", frames_, seconds);
+  if (frames_ > 0 && seconds > 0) out += fmt::format(", {:.1f} frames/s", static_cast<double>(frames_) / seconds);
+  const std::int64_t dropped = frames_ > 0 ? last_index_ - first_index_ + 1 - frames_ : 0;
+  out += fmt::format(", {} dropped\n", dropped);
+  if (odometry_known_ + odometry_missing_ > 0)
+    out += fmt::format("odometry known at {} frames, missing at {}\n", odometry_known_, odometry_missing_);
+  if (frames_ == 0) return out;
+  out += fmt::format("\n{:16}{:>10}{:>10}\n", "seen", "frames", "objects");
+  for (const auto& [kind, count] : seen_) out += fmt::format("{:16}{:>10}{:>10}\n", kind, count.frames, count.objects);
+  out += fmt::format("\n{:16}{:>10}{:>10}\n", "stage", "median ms", "p99 ms");
+  for (const auto& [stage, ms] : times_)
+    out += fmt::format("{:16}{:>10.3f}{:>10.3f}\n", stage, quantile(ms, 0.5), quantile(ms, 0.99));
+  return out;
+}
+
+}  // namespace tassilo

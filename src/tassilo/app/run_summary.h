@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tassilo/scene/scene.h"
+
+namespace tassilo {
+
+/// What is worth telling of all scenes of a run, at its end.
+class RunSummary {
+ public:
+  void add(const Scene& scene);
+  /// Odometry was given: did it say where the robot was at this frame's time?
+  void add_odometry(bool known) { ++(known ? odometry_known_ : odometry_missing_); }
+
+  /// A table for people, several lines, each ended.
+  std::string text(double seconds) const;
+
+ private:
+  std::int64_t frames_ = 0;
+  std::int64_t first_index_ = 0, last_index_ = 0;
+  std::int64_t odometry_known_ = 0, odometry_missing_ = 0;
+  struct Count {
+    std::int64_t frames = 0, objects = 0;
+  };
+  std::vector<std::pair<std::string, Count>> seen_;
+  std::vector<std::pair<std::string, std::vector<double>>> times_;  ///< By stage, in the order they ran. [ms]
+
+  Count& count_of(const std::string& kind);
+};
+
+}  // namespace tassilo

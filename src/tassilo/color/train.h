@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "tassilo/color/color_table.h"
+#include "tassilo/region/region.h"
+
+namespace tassilo {
+
+struct YuvPixel {
+  std::uint8_t y = 0, u = 0, v = 0;
+};
+
+/// Pixels that a user said belong to one class, from one place of one image.
+struct ColorSample {
+  ColorClass color = ColorClass::no_color;
+  int group = 0;  ///< Samples of one image share it; held out together when quality is measured.
+  std::vector<YuvPixel> pixels;
+};
+
+/// The pixels of `region` that lie in the frame, row by row; empty when none does. O(pixels).
+std::vector<YuvPixel> pixels_of(const FrameView& frame, const Region& region);
+
+/// How samples become a table. Distances in the UV plane are in chroma quantization steps.
+struct TrainingOptions {
+  /// Share of a class's pixels that may be wrong or freak: the rarest cells of its UV histogram that together hold this
+  /// share are dropped. [1], 0 .. .2
+  double outlier_share = 0.002;
+  /// A separate cluster of a class with a smaller share of its pixels is a slip of the hand. [1], 0 .. .5
+  double min_cluster_share = 0.05;
+  int closing_px =
+      5;  ///< Side of the square that closes gaps between cells that were merely not drawn. [step], 1 .. 31
+  int opening_px = 3;  ///< Side of the square that removes single cells. [step], 1 .. 15
+  /// Margin around the cluster: three standard deviations of chroma noise of an ordinary camera. [step], 0 .. 20
+  double noise_margin = 3.0;
+  /// Darkest shade that still counts: a colored surface in shade loses chroma and brightness in proportion. [1], .1 ..
+  /// 1
+  double darkest_shade = 0.45;
+  /// Brightest light on the class relative to its samples. [1], 1 .. 2
+  double brightest_light = 1.15;
+  /// Between the brightest black and the darkest white lies gray that is neither (robots' gray parts, the hall): the
+  /// share of this gap that white takes from above and black from below. [1], 0 .. .5
+  double white_reach = 0.25, black_reach = 0.10;
+
+  void check() const;  ///< Throws Error naming the first field out of range.
+};
+
+/// Trains a color table.
+///
+/// samples  any order; classes without samples stay empty; no_color samples only take cells away from the others
+/// range    quantization of the samples' frames; stored in the table
+/// returns  one table with the default priority; where two classes come near each other in the UV plane each keeps the
+///          cells that lie nearer to it
+/// errors   none: a class whose samples are all outliers stays empty
+/// cost     O(pixels + classes x 256^2), some 10 ms
+/// source   the AGILO training (histogram, threshold, closing, opening) with shading lines and competition (own)
+ColorTable train_colors(const std::vector<ColorSample>& samples, ColorRange range, const TrainingOptions& options = {});
+
+}  // namespace tassilo

@@ -1,0 +1,337 @@
+#include "tassilo/detect/ball.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <string>
+
+#include "tassilo/base/error.h"
+#include "tassilo/detect/edge.h"
+#include "tassilo/detect/sphere_fit.h"
+#include "tassilo/region/algebra.h"
+#include "tassilo/region/components.h"
+#include "tassilo/region/features.h"
+#include "tassilo/region/fill.h"
+#include "tassilo/region/morphology.h"
+#include "tassilo/region/raster.h"
+
+namespace tassilo {
+namespace {
+
+ColorClass ball_color(const FieldModel& field) { return color_class_from(field.ball.color).value_or(ColorClass::red); }
+
+/// A place on the rim of a segment: between a pixel inside and its neighbor outside.
+struct RimPoint {
+  PixelPoint at;
+  bool hidden = false;  ///< A robot begins there: the ball may go on behind it.
+};
+
+/// Rim of a segment without what the image border cuts. O(pixels of the rim x log runs).
+std::vector<RimPoint> rim_of(const View& view, const Region& segment) {
+  std::vector<RimPoint> rim;
+  const auto add = [&](int c, int r, int dc, int dr) {
+    if (!view.inside(c + dc, r + dr)) return;
+    // One pixel of mixed color may lie between ball and robot.
+    const bool hidden = is_robot_color(view.color(c + dc, r + dr)) ||
+                        (view.inside(c + 2 * dc, r + 2 * dr) && is_robot_color(view.color(c + 2 * dc, r + 2 * dr)));
+    rim.push_back({{c + dc / 2.0, r + dr / 2.0}, hidden});
+  };
+  for (const PixelRun& run : segment.runs()) {
+    add(run.begin, run.row, -1, 0);
+    add(run.end - 1, run.row, 1, 0);
+    for (int c = run.begin; c < run.end; ++c) {
+      if (!contains(segment, c, run.row - 1)) add(c, run.row, 0, -1);
+      if (!contains(segment, c, run.row + 1)) add(c, run.row, 0, 1);
+    }
+  }
+  return rim;
+}
+
+std::vector<PixelPoint> positions(const std::vector<RimPoint>& rim, bool with_hidden) {
+  std::vector<PixelPoint> points;
+  for (const RimPoint& p : rim)
+    if (with_hidden || !p.hidden) points.push_back(p.at);
+  return points;
+}
+
+/// A first guess: the middle of the segment at the ball's height above the floor; if its ray does not go down that far,
+/// as far away as its size says.
+std::optional<RestingSphere> first_guess(const View& view, const PixelBox& box) {
+  const MountedCamera& camera = view.optics->camera;
+  const double radius = view.field.ball.radius.middle();
+  const PixelPoint middle{(box.x0 + box.x1 - 1) / 2.0, (box.y0 + box.y1 - 1) / 2.0};
+  const double furthest = longest_distance(view.field);
+  if (camera.center().z > radius)
+    if (const auto foot = camera.floor_point(middle, radius, 2 * furthest)) return RestingSphere{*foot, radius};
+  const auto ray = camera.ray(middle);
+  const auto left = camera.ray({box.x0 - 0.5, middle.y}), right = camera.ray({box.x1 - 0.5, middle.y});
+  if (!ray || !left || !right) return std::nullopt;
+  const double half = std::acos(std::clamp(dot(*left, *right), -1.0, 1.0)) / 2;
+  const double range = std::min(radius / std::max(std::sin(half), 1e-3), furthest);
+  const double flat = std::hypot(ray->x, ray->y);
+  if (flat < 1e-6) return std::nullopt;
+  return RestingSphere{{camera.center().x + range * ray->x / flat, camera.center().y + range * ray->y / flat}, radius};
+}
+
+/// Sub-pixel edges along the outline of a sphere; left out: beyond the border and where a robot hides the rim.
+std::vector<PixelPoint> outline_edges(const View& view, const RestingSphere& sphere, bool with_hidden) {
+  std::vector<PixelPoint> edges;
+  const auto disc = project_disc(view.optics->camera, sphere);
+  if (!disc) return edges;
+  // Far enough for both plateaus, near enough to stay on the ball and beside it.
+  const double reach = std::clamp(0.35 * disc->radius_px, 2.0, 4.0);
+  const int count = static_cast<int>(std::clamp(2 * std::numbers::pi * disc->radius_px, 16.0, 64.0));
+  for (const OutlinePoint& p : outline(view.optics->camera, sphere, count)) {
+    bool usable = true;
+    for (const double along : {-reach, 1.0, reach}) {
+      const PixelPoint q = p.at + along * p.outward;
+      const int c = static_cast<int>(std::lround(q.x)), r = static_cast<int>(std::lround(q.y));
+      usable = usable && view.inside(c, r) && (with_hidden || along < 0 || !is_robot_color(view.color(c, r)));
+    }
+    if (!usable) continue;
+    if (const auto edge = find_edge(view.frame, {.at = p.at, .outward = p.outward, .reach_px = reach}))
+      edges.push_back(*edge);
+  }
+  return edges;
+}
+
+/// What the image shows of a sphere's disc.
+struct DiscView {
+  int disc = 0;                         ///< Pixels of the disc in the image.
+  int own = 0;                          ///< Of these, the ball's color.
+  int hidden = 0;                       ///< Of these, robot colors.
+  int clipped = 0;                      ///< Pixels of the disc outside the image.
+  int foot = 0;                         ///< Points below the lower rim in the image.
+  int foot_floor = 0, foot_hidden = 0;  ///< Of these, on the floor; on a robot.
+};
+
+DiscView look_at_disc(const View& view, const RestingSphere& sphere, ColorClass color) {
+  DiscView look;
+  std::vector<PixelPoint> polygon;
+  for (const OutlinePoint& p : outline(view.optics->camera, sphere, 48)) {
+    polygon.push_back(p.at);
+    if (p.outward.y < 0.5) continue;  // the lower third of the rim
+    for (const double along : {2.0, 3.0}) {
+      const PixelPoint q = p.at + along * p.outward;
+      const int c = static_cast<int>(std::lround(q.x)), r = static_cast<int>(std::lround(q.y));
+      if (!view.inside(c, r)) continue;
+      ++look.foot;
+      look.foot_floor += view.surface.is_floor(c, r);
+      look.foot_hidden += is_robot_color(view.color(c, r));
+    }
+  }
+  const int w = view.segmentation.width, h = view.segmentation.height;
+  const PixelBox window{-w, -h, 2 * w, 2 * h};
+  const Region disc = region_from_polygon(polygon, window);
+  for (const PixelRun& run : disc.runs())
+    for (int c = run.begin; c < run.end; ++c) {
+      if (!view.inside(c, run.row)) {
+        ++look.clipped;
+        continue;
+      }
+      ++look.disc;
+      look.own += view.color(c, run.row) == color;
+      look.hidden += is_robot_color(view.color(c, run.row));
+    }
+  return look;
+}
+
+/// Distance from the eye's foot at which the lower (sign +1) tangent to a resting sphere goes down by `depression`. [m]
+double tangent_distance(double eye_height, double radius, double depression) {
+  const auto angle = [&](double d) {
+    const double down = eye_height - radius;
+    return std::atan2(down, d) + std::asin(std::min(1.0, radius / std::hypot(d, down)));
+  };
+  double near = 1e-3, far = 1e3;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = std::sqrt(near * far);
+    (angle(middle) > depression ? near : far) = middle;
+  }
+  return std::sqrt(near * far);
+}
+
+/// DESIGN 6.5: the lowest pixel of the segment below the centre bounds the distance from above, the highest pixel of
+/// floor below it from below. Nothing where either is hidden or cut.
+std::optional<DistanceBounds> tangent_bounds(const View& view, const SphereFit& fit, ColorClass color) {
+  const MountedCamera& camera = view.optics->camera;
+  // Right, top, left, bottom: the bottom lies straight below the centre, where the tangent is.
+  const auto around = outline(camera, fit.sphere, 4);
+  if (around.size() != 4) return std::nullopt;
+  const OutlinePoint& lowest = around[3];
+  std::optional<PixelPoint> last_own, first_floor;
+  for (double along = -3; along <= 6; along += 0.25) {
+    const PixelPoint p = lowest.at + along * lowest.outward;
+    const int c = static_cast<int>(std::lround(p.x)), r = static_cast<int>(std::lround(p.y));
+    if (!view.inside(c, r)) return std::nullopt;
+    if (view.color(c, r) == color) {
+      last_own = p;
+    } else if (is_robot_color(view.color(c, r))) {
+      return std::nullopt;
+    } else if (last_own && view.surface.is_floor(c, r)) {
+      first_floor = p;
+      break;
+    }
+  }
+  if (!last_own || !first_floor) return std::nullopt;
+  // A pixel counts with its whole extent: the rim may cross it anywhere.
+  constexpr double half_px = 0.5;
+  const auto upper = camera.ray(*last_own - half_px * lowest.outward);
+  const auto lower = camera.ray(*first_floor + half_px * lowest.outward);
+  if (!upper || !lower) return std::nullopt;
+  const double heading = std::atan2(fit.sphere.foot.y - camera.center().y, fit.sphere.foot.x - camera.center().x);
+  const auto from_robot = [&](RobotPoint ray, double radius) {
+    const double depression = std::atan2(-ray.z, std::hypot(ray.x, ray.y));
+    const double d = tangent_distance(camera.center().z, radius, depression);
+    return norm(FloorPoint{camera.center().x + d * std::cos(heading), camera.center().y + d * std::sin(heading)});
+  };
+  const Interval radius = view.field.ball.radius;
+  const double a = from_robot(*upper, radius.low), b = from_robot(*upper, radius.high);
+  const double c = from_robot(*lower, radius.low), d = from_robot(*lower, radius.high);
+  return DistanceBounds{std::min({a, b, c, d}), std::max({a, b, c, d})};
+}
+
+std::optional<Ball> ball_on_floor(const View& view, const Region& segment, const BallOptions& options) {
+  const MountedCamera& camera = view.optics->camera;
+  const ColorClass color = ball_color(view.field);
+  const PixelBox box = bounding_box(segment);
+  const auto guess = first_guess(view, box);
+  if (!guess) return std::nullopt;
+
+  const std::vector<RimPoint> rim = rim_of(view, fill_holes(segment));
+  const auto open = static_cast<std::size_t>(std::ranges::count(rim, false, &RimPoint::hidden));
+  // A robot behind the ball looks like one before it: with hardly any open rim, every point of it is better than none.
+  const bool with_hidden = open < std::max<std::size_t>(6, rim.size() / 4);
+  const auto coarse_edges = positions(rim, with_hidden);
+  if (coarse_edges.size() < 3) return std::nullopt;
+  SphereFitOptions fitting{.radius = view.field.ball.radius, .edge_sigma_px = 1.0, .iterations = 20};
+  auto fit = fit_resting_sphere(camera, coarse_edges, *guess, fitting);
+  if (!fit) return std::nullopt;
+
+  const auto coarse_disc = project_disc(camera, fit->sphere);
+  if (!coarse_disc || fit->rms_px > std::max(1.5, 0.25 * coarse_disc->radius_px)) return std::nullopt;
+  fitting.edge_sigma_px = options.edge_sigma_px;
+  for (int round = 0; round < 2; ++round) {
+    const auto edges = outline_edges(view, fit->sphere, with_hidden);
+    if (edges.size() < 6) break;
+    if (const auto finer = fit_resting_sphere(camera, edges, fit->sphere, fitting)) fit = finer;
+  }
+
+  const auto disc = project_disc(camera, fit->sphere);
+  if (!disc) return std::nullopt;
+  const double distance_m = norm(fit->sphere.foot);
+  if (distance_m > longest_distance(view.field)) return std::nullopt;
+  const DiscView look = look_at_disc(view, fit->sphere, color);
+  const int open_disc = look.disc - look.hidden;
+  if (look.own < options.min_area_px || look.own < options.min_cover * open_disc) return std::nullopt;
+  const int whole = look.disc + look.clipped;
+  if (look.own < 0.03 * whole) return std::nullopt;  // a crescent too thin for any shape
+  // The segment must be about as large as the disc: a shirt that fills it and goes on is none.
+  if (area(segment) > 1.6 * look.own + 8) return std::nullopt;
+  const bool cut = look.clipped > 0 || look.hidden > 0;
+  if (!cut && (box.width() < options.min_width * 2 * disc->radius_px - 1 ||
+               box.height() < options.min_height * 2 * disc->radius_px - 1))
+    return std::nullopt;
+  // It rests on the floor: carpet shows below it, unless something hides its foot.
+  const int foot_open = look.foot - look.foot_hidden;
+  const double foot_share = foot_open > 0 ? static_cast<double>(look.foot_floor) / foot_open : 0.5;
+  if (foot_open > 0 && foot_share < 0.4) return std::nullopt;
+
+  Ball ball;
+  ball.box = box;
+  ball.center = disc->center;
+  ball.radius_px = disc->radius_px;
+  const double cover = open_disc > 0 ? static_cast<double>(look.own) / open_disc : 0;
+  const double seen = static_cast<double>(look.own) / std::max(1, whole);
+  const double roundness = std::exp(-fit->rms_px * fit->rms_px / (0.08 * disc->radius_px * disc->radius_px + 0.5));
+  ball.confidence = std::clamp(cover * roundness * (0.5 + 0.5 * foot_share) * (0.4 + 0.6 * seen), 0.0, 1.0);
+
+  BallOnFloor floor;
+  floor.position.mean = fit->sphere.foot;
+  floor.position.covariance = fit->covariance.topLeftCorner<2, 2>();
+  if (const auto common =
+          floor_gaussian(camera, disc->center, options.common_sigma_px, view.optics->mount_sigma, fit->sphere.radius))
+    floor.position.covariance += common->covariance;
+  const Eigen::Vector2d sight(fit->sphere.foot.x / distance_m, fit->sphere.foot.y / distance_m);
+  const double sigma = std::sqrt(sight.dot(floor.position.covariance * sight));
+  floor.bounds = {std::max(0.0, distance_m - options.bound_sigmas * sigma), distance_m + options.bound_sigmas * sigma};
+  if (const auto bounds = tangent_bounds(view, *fit, color)) {
+    floor.bounds.near = std::min(bounds->near, floor.bounds.near);
+    floor.bounds.far = std::max(bounds->far, floor.bounds.far);
+  }
+  ball.floor = floor;
+  return ball;
+}
+
+/// Without a camera: round, and carpet below.
+std::optional<Ball> ball_in_image(const View& view, const Region& segment, const BallOptions& options) {
+  const Region filled = fill_holes(segment);
+  const std::int64_t pixels = area(filled);
+  if (pixels < 3 * options.min_area_px) return std::nullopt;
+  const PixelBox box = bounding_box(filled);
+  const ShapeFeatures shape = shape_features(filled);
+  // An ideal disc has anisometry 1; cut by the border or partly hidden it may reach 2.
+  const bool cut =
+      box.x0 == 0 || box.y0 == 0 || box.x1 == view.segmentation.width || box.y1 == view.segmentation.height;
+  // (0: all pixels on one line)
+  if (shape.anisometry < 1 || shape.anisometry > (cut ? 2.5 : 1.6)) return std::nullopt;
+  const double fill = static_cast<double>(pixels) / static_cast<double>(box.area());
+  if (fill < 0.6) return std::nullopt;  // pi / 4 for a disc
+  int floor = 0, below = 0;
+  for (int c = box.x0; c < box.x1; ++c)
+    for (const int r : {box.y1 + 1, box.y1 + 2})
+      if (view.inside(c, r)) {
+        ++below;
+        floor += view.surface.is_floor(c, r);
+      }
+  const double foot_share = below > 0 ? static_cast<double>(floor) / below : 0.5;
+  Ball ball;
+  ball.box = box;
+  ball.center = {(box.x0 + box.x1 - 1) / 2.0, (box.y0 + box.y1 - 1) / 2.0};
+  ball.radius_px = std::sqrt(static_cast<double>(pixels) / std::numbers::pi);
+  ball.confidence = std::clamp((0.2 + 0.8 * foot_share) / shape.anisometry * std::min(1.0, fill / 0.75), 0.0, 1.0);
+  return ball;
+}
+
+}  // namespace
+
+void BallOptions::check() const {
+  const auto share = [](const char* name, double value) {
+    if (!(value >= 0 && value <= 1))
+      throw Error(std::string("ball.") + name, "is " + std::to_string(value) + ", must be in [0, 1]");
+  };
+  const auto positive = [](const char* name, double value) {
+    if (!(value > 0)) throw Error(std::string("ball.") + name, "is " + std::to_string(value) + ", must be > 0");
+  };
+  positive("min_area_px", min_area_px);
+  positive("max_balls", max_balls);
+  share("min_width", min_width);
+  share("min_height", min_height);
+  share("min_cover", min_cover);
+  positive("edge_sigma_px", edge_sigma_px);
+  positive("common_sigma_px", common_sigma_px);
+  positive("bound_sigmas", bound_sigmas);
+}
+
+std::vector<Ball> find_balls(const View& view, const BallOptions& options) {
+  // A line before or a highlight on the ball may split it by a pixel.
+  const Region joined = closing(view.segmentation.of(ball_color(view.field)), rectangle(3, 3));
+  std::vector<Ball> balls;
+  for (const Region& segment : components(joined)) {
+    if (area(segment) < options.min_area_px) continue;
+    auto ball = view.optics != nullptr ? ball_on_floor(view, segment, options) : ball_in_image(view, segment, options);
+    if (ball) balls.push_back(std::move(*ball));
+  }
+  std::ranges::stable_sort(balls, std::greater<>{}, &Ball::confidence);
+  // Two pieces of one ball are one ball.
+  std::vector<Ball> kept;
+  for (Ball& ball : balls) {
+    const bool same = std::ranges::any_of(kept, [&](const Ball& other) {
+      return distance(other.center, ball.center) < std::max(other.radius_px, ball.radius_px);
+    });
+    if (!same && kept.size() < static_cast<std::size_t>(options.max_balls)) kept.push_back(std::move(ball));
+  }
+  return kept;
+}
+
+}  // namespace tassilo

@@ -1,0 +1,134 @@
+#include "tassilo/detect/sphere_fit.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "tassilo/base/contract.h"
+
+namespace tassilo {
+namespace {
+
+Eigen::Vector3d eigen(RobotPoint p) { return {p.x, p.y, p.z}; }
+
+/// Pixels per radian around a direction: the geometric mean of both axes of the image. [px/rad]
+double pixels_per_radian(const MountedCamera& camera, RobotPoint direction) {
+  const RobotPoint unit = normalized(direction);
+  const RobotPoint side = normalized(cross(RobotPoint{0, 0, 1}, unit));
+  const RobotPoint up = cross(unit, side);
+  constexpr double step = 1e-3;
+  const auto center = camera.project(camera.center() + unit);
+  const auto beside = camera.project(camera.center() + unit + step * side);
+  const auto above = camera.project(camera.center() + unit + step * up);
+  if (!center || !beside || !above) return std::sqrt(camera.model().fx * camera.model().fy);
+  const double stretch = std::abs(cross(*beside - *center, *above - *center));
+  return std::sqrt(std::max(stretch, 1e-12)) / step;
+}
+
+}  // namespace
+
+std::vector<OutlinePoint> outline(const MountedCamera& camera, const RestingSphere& sphere, int count) {
+  std::vector<OutlinePoint> points;
+  const RobotPoint sight = sphere.center() - camera.center();
+  const double range = norm(sight);
+  if (range <= sphere.radius) return points;
+  const RobotPoint axis = (1 / range) * sight;
+  const RobotPoint right = normalized(cross(axis, RobotPoint{0, 0, 1}));
+  const RobotPoint up = cross(right, axis);
+  const double sine = sphere.radius / range, cosine = std::sqrt(1 - sine * sine);
+  for (int i = 0; i < count; ++i) {
+    const double angle = 2 * std::numbers::pi * i / count;
+    const RobotPoint radial = std::cos(angle) * right + std::sin(angle) * up;
+    const auto on = camera.project(camera.center() + cosine * axis + sine * radial);
+    const auto out = camera.project(camera.center() + cosine * axis + (1.05 * sine) * radial);
+    if (!on || !out) continue;
+    const double length = distance(*out, *on);
+    if (length > 0) points.push_back({*on, (1 / length) * (*out - *on)});
+  }
+  return points;
+}
+
+std::optional<ProjectedDisc> project_disc(const MountedCamera& camera, const RestingSphere& sphere) {
+  const auto center = camera.project(sphere.center());
+  const auto around = outline(camera, sphere, 16);
+  if (!center || around.size() < 16) return std::nullopt;
+  double sum = 0;
+  for (const OutlinePoint& p : around) sum += distance(p.at, *center);
+  return ProjectedDisc{*center, sum / static_cast<double>(around.size())};
+}
+
+std::optional<SphereFit> fit_resting_sphere(const MountedCamera& camera, std::span<const PixelPoint> edges,
+                                            const RestingSphere& start, const SphereFitOptions& options) {
+  expects(edges.size() >= 3, "three edges or more");
+  std::vector<Eigen::Vector3d> rays;
+  for (const PixelPoint& edge : edges)
+    if (const auto ray = camera.ray(edge)) rays.push_back(eigen(*ray));
+  if (rays.size() < 3) return std::nullopt;
+
+  const Eigen::Vector3d eye = eigen(camera.center());
+  const double px_per_rad = pixels_per_radian(camera, start.center() - camera.center());
+  const double radius_sigma = std::max(1e-4, (options.radius.high - options.radius.low) / std::sqrt(12.0));
+  Eigen::Vector3d state(start.foot.x, start.foot.y, options.radius.middle());
+
+  /// Distance of every ray from the outline, and its derivative by (x, y, radius). [px]
+  const auto residuals = [&](const Eigen::Vector3d& s, Eigen::VectorXd& r, Eigen::MatrixX3d* jacobian) {
+    const Eigen::Vector3d sight = Eigen::Vector3d(s[0], s[1], s[2]) - eye;
+    const double range = sight.norm();
+    if (!(range > 1.05 * s[2])) return false;
+    const double sine = s[2] / range, width = std::sqrt(1 - sine * sine);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const double cosine = std::clamp(rays[i].dot(sight) / range, -1.0, 1.0);
+      const double across = std::sqrt(std::max(1e-12, 1 - cosine * cosine));
+      const auto k = static_cast<Eigen::Index>(i);
+      r[k] = px_per_rad * (std::acos(cosine) - std::asin(sine));
+      if (jacobian == nullptr) continue;
+      const Eigen::Vector3d by_center =
+          -(rays[i] - cosine * sight / range) / (range * across) + (sine / (width * range)) * (sight / range);
+      // The centre rises with the radius.
+      jacobian->row(k) =
+          px_per_rad * Eigen::RowVector3d(by_center[0], by_center[1], by_center[2] - 1 / (width * range));
+    }
+    return true;
+  };
+
+  const auto n = static_cast<Eigen::Index>(rays.size());
+  Eigen::VectorXd r(n);
+  Eigen::MatrixX3d jacobian(n, 3);
+  const double sigma = options.edge_sigma_px, huber = 2 * sigma;
+  Eigen::Matrix3d information = Eigen::Matrix3d::Identity();
+  for (int iteration = 0; iteration < options.iterations; ++iteration) {
+    if (!residuals(state, r, &jacobian)) return std::nullopt;
+    information.setZero();
+    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double weight = (std::abs(r[i]) <= huber ? 1 : huber / std::abs(r[i])) / (sigma * sigma);
+      information += weight * jacobian.row(i).transpose() * jacobian.row(i);
+      gradient += weight * r[i] * jacobian.row(i).transpose();
+    }
+    information(2, 2) += 1 / (radius_sigma * radius_sigma);
+    gradient[2] += (state[2] - options.radius.middle()) / (radius_sigma * radius_sigma);
+    Eigen::Vector3d step = -information.ldlt().solve(gradient);
+    if (!step.allFinite()) return std::nullopt;
+    // A step longer than half the distance leaves the region where the outline is nearly linear.
+    const double range = std::hypot(state[0] - eye[0], state[1] - eye[1]);
+    const double length = std::hypot(step[0], step[1]);
+    if (length > 0.5 * range) step *= 0.5 * range / length;
+    state += step;
+    state[2] = std::clamp(state[2], options.radius.low, options.radius.high);
+    if (length < 1e-5) break;
+  }
+  if (!residuals(state, r, nullptr)) return std::nullopt;
+  SphereFit fit;
+  fit.sphere = {{state[0], state[1]}, state[2]};
+  fit.covariance = information.inverse();
+  fit.rms_px = std::sqrt(r.squaredNorm() / static_cast<double>(n));
+  fit.inlier_share = static_cast<double>((r.array().abs() <= 3 * sigma).count()) / static_cast<double>(n);
+  const RobotPoint sight = fit.sphere.center() - camera.center();
+  if (camera.optical_from_robot(sight).z <= 0 && !std::holds_alternative<Equidistant>(camera.model().distortion))
+    return std::nullopt;
+  if (!fit.covariance.allFinite()) return std::nullopt;
+  return fit;
+}
+
+}  // namespace tassilo

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "tassilo/camera/mount.h"
+#include "tassilo/field/field_model.h"
+#include "tassilo/geometry/point.h"
+
+namespace tassilo {
+
+/// A sphere that rests on the floor.
+struct RestingSphere {
+  FloorPoint foot;    ///< Below its centre, where it touches the floor. [m]
+  double radius = 0;  ///< [m]
+
+  RobotPoint center() const { return {foot.x, foot.y, radius}; }
+};
+
+/// Points of the sphere's outline in the image, `count` of them, evenly around its axis of sight, counter-clockwise in
+/// the image; those that cannot show are left out. O(count).
+struct OutlinePoint {
+  PixelPoint at;
+  PixelPoint outward;  ///< Unit vector across the outline, away from the ball.
+};
+std::vector<OutlinePoint> outline(const MountedCamera& camera, const RestingSphere& sphere, int count);
+
+/// Angular radius in the middle of the image of the sphere, and its projected centre.
+struct ProjectedDisc {
+  PixelPoint center;
+  double radius_px = 0;  ///< Mean over columns and rows. [px]
+};
+std::optional<ProjectedDisc> project_disc(const MountedCamera& camera, const RestingSphere& sphere);
+
+struct SphereFit {
+  RestingSphere sphere;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  ///< Of foot.x, foot.y, radius; from the edges alone.
+  double rms_px = 0;                                         ///< Of the edges' distance from the fitted outline.
+  double inlier_share = 0;                                   ///< Edges within three edge_sigma_px. [1]
+};
+
+struct SphereFitOptions {
+  Interval radius;             ///< Prior of the radius: uniform between both. [m]
+  double edge_sigma_px = 0.5;  ///< Of one edge point across the outline. [px]
+  int iterations = 8;
+};
+
+/// Fits a sphere that rests on the floor to points on its outline, by Gauss-Newton on their distance from the outline
+/// with Huber weights; exact for every lens, for it compares angles between rays. Nothing when it does not converge in
+/// front of the camera.
+///
+/// edges    at least 3, pixels
+/// start    a rough position
+/// cost     O(edges x iterations); source: own
+std::optional<SphereFit> fit_resting_sphere(const MountedCamera& camera, std::span<const PixelPoint> edges,
+                                            const RestingSphere& start, const SphereFitOptions& options);
+
+}  // namespace tassilo

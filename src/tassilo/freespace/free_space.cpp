@@ -1,0 +1,152 @@
+#include "tassilo/freespace/free_space.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "tassilo/base/error.h"
+#include "tassilo/geometry/angle.h"
+
+namespace tassilo {
+namespace {
+
+SectorMap::Ray follow(const MountedCamera& camera, FloorPoint origin, double angle, double max_range) {
+  SectorMap::Ray ray;
+  const FloorPoint along{std::cos(angle), std::sin(angle)};
+  const auto pixel_at = [&](double range) {
+    const FloorPoint p = origin + range * along;
+    return camera.project({p.x, p.y, 0});
+  };
+  const int width = camera.model().width, height = camera.model().height;
+  double step = 0.002;
+  bool entered = false;
+  for (double range = 0.01; range <= max_range; range += step) {
+    const auto pixel = pixel_at(range), next = pixel_at(range + step);
+    if (pixel && next) {
+      // Half a pixel further each time: no pixel on the way is missed.
+      const double moved = distance(*pixel, *next);
+      step = std::clamp(moved > 1e-9 ? step * 0.5 / moved : 2 * step, 5e-4, 0.2);
+    }
+    const int c = pixel ? static_cast<int>(std::lround(pixel->x)) : -1;
+    const int r = pixel ? static_cast<int>(std::lround(pixel->y)) : -1;
+    if (c < 0 || r < 0 || c >= width || r >= height) {
+      if (entered) return ray;  // left the view
+      continue;
+    }
+    entered = true;
+    if (ray.steps.empty() || ray.steps.back().column != c || ray.steps.back().row != r)
+      ray.steps.push_back({static_cast<std::int16_t>(c), static_cast<std::int16_t>(r), static_cast<float>(range)});
+  }
+  ray.reaches_max = entered;
+  return ray;
+}
+
+struct RayEnd {
+  SectorState state = SectorState::unseen;
+  double range = 0;
+};
+
+class Walker {
+ public:
+  Walker(const SectorMap& map, const Segmentation& segmentation, const Surface& surface, std::span<const Ball> balls)
+      : map_(map), segmentation_(segmentation), surface_(surface), balls_(balls) {}
+
+  RayEnd operator()(const SectorMap::Ray& ray) const {
+    if (ray.steps.empty()) return {};
+    double free_until = 0;  // floor nearer than the view counts as free once the first pixel is
+    double ball_from = -1;  // where the ball began to hide the floor
+    int odd = 0;            // pixels that are neither floor nor ball since the last floor
+    for (const SectorMap::Step& step : ray.steps) {
+      if (surface_.is_floor(step.column, step.row)) {
+        free_until = step.range;
+        ball_from = -1;
+        odd = 0;
+      } else if (on_ball(step.column, step.row)) {
+        if (ball_from < 0) ball_from = free_until;
+      } else if (++odd > map_.options().noise_px) {
+        // Directly behind the ball: the floor up to the obstacle is hidden, not seen.
+        return {ball_from >= 0 ? SectorState::free : SectorState::blocked, free_until};
+      }
+    }
+    return {odd > 0 && ball_from < 0 ? SectorState::blocked : SectorState::free, free_until};
+  }
+
+ private:
+  bool on_ball(int column, int row) const {
+    return std::ranges::any_of(balls_, [&](const Ball& ball) {
+      // The rim of mixed colors and the shadow at the foot belong to it.
+      const double reach = ball.radius_px + 2;
+      return std::hypot(column - ball.center.x, row - ball.center.y) <= reach ||
+             (column >= ball.box.x0 && column < ball.box.x1 && row >= ball.box.y0 && row < ball.box.y1);
+    });
+  }
+
+  const SectorMap& map_;
+  const Segmentation& segmentation_;
+  const Surface& surface_;
+  std::span<const Ball> balls_;
+};
+
+}  // namespace
+
+void FreeSpaceOptions::check() const {
+  const auto in = [](const char* name, double value, double low, double high) {
+    if (!(value >= low && value <= high))
+      throw Error(std::string("free_space.") + name, "is " + std::to_string(value) + ", must be in [" +
+                                                         std::to_string(low) + ", " + std::to_string(high) + "]");
+  };
+  in("sector_deg", sector_deg, 0.1, 90);
+  in("rays", rays, 1, 99);
+  in("max_range", max_range, 0.01, 1000);
+  in("noise_px", noise_px, 0, 100);
+}
+
+SectorMap::SectorMap(const MountedCamera& camera, const FreeSpaceOptions& options)
+    : options_(options), origin_{camera.center().x, camera.center().y} {
+  options_.check();
+  angle_increment_ = radians(options_.sector_deg);
+  // Only directions the camera can see, sector centres on multiples of the width.
+  const auto count = static_cast<int>(std::floor(2 * std::numbers::pi / angle_increment_ + 1e-9));
+  int first = count, last = -1;
+  std::vector<std::vector<Ray>> all(static_cast<std::size_t>(count));
+  for (int k = 0; k < count; ++k) {
+    const int sector = k - count / 2;
+    auto& rays = all[static_cast<std::size_t>(k)];
+    bool seen = false;
+    for (int i = 0; i < options_.rays; ++i) {
+      const double offset = (i + 0.5) / options_.rays - 0.5;
+      rays.push_back(follow(camera, origin_, (sector + offset) * angle_increment_, options_.max_range));
+      seen = seen || !rays.back().steps.empty();
+    }
+    if (!seen) continue;
+    first = std::min(first, k);
+    last = std::max(last, k);
+  }
+  angle_min_ = (first - count / 2) * angle_increment_;
+  for (int k = first; k <= last; ++k)
+    for (Ray& ray : all[static_cast<std::size_t>(k)]) rays_.push_back(std::move(ray));
+  if (rays_.empty()) angle_min_ = 0;
+}
+
+FreeSpace find_free_space(const SectorMap& map, const Segmentation& segmentation, const Surface& surface,
+                          std::span<const Ball> balls) {
+  FreeSpace space;
+  space.origin = map.origin();
+  space.angle_min = map.angle_min();
+  space.angle_increment = map.angle_increment();
+  const Walker walk(map, segmentation, surface, balls);
+  for (std::size_t sector = 0; sector < map.sectors(); ++sector) {
+    RayEnd shortest;
+    for (const SectorMap::Ray& ray : map.rays(sector)) {
+      const RayEnd end = walk(ray);
+      if (end.state == SectorState::unseen) continue;
+      if (shortest.state == SectorState::unseen || end.range < shortest.range) shortest = end;
+    }
+    space.states.push_back(shortest.state);
+    space.ranges.push_back(shortest.range);
+  }
+  return space;
+}
+
+}  // namespace tassilo

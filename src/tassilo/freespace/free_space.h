@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "tassilo/camera/mount.h"
+#include "tassilo/color/segment.h"
+#include "tassilo/scene/scene.h"
+#include "tassilo/surface/surface.h"
+
+namespace tassilo {
+
+struct FreeSpaceOptions {
+  double sector_deg = 2;  ///< Width of a sector. [deg], .1 .. 90
+  int rays = 5;           ///< Lines of sight followed per sector; the shortest counts. 1 .. 99
+  double max_range = 8;   ///< Floor further away is not asked for. [m], > 0
+  int noise_px = 2;       ///< So many odd pixels in a row are noise, when floor follows. [px], >= 0
+  void check() const;     ///< Throws Error naming the first field out of range.
+};
+
+/// For one mounted camera: which pixels lie along which direction, from near to far. Computed once; immutable.
+class SectorMap {
+ public:
+  SectorMap(const MountedCamera& camera, const FreeSpaceOptions& options);
+
+  /// A pixel on a line of sight along the floor, and its distance from the origin. [m]
+  struct Step {
+    std::int16_t column, row;
+    float range;
+  };
+  struct Ray {
+    std::vector<Step> steps;   ///< Empty where no floor of this direction is in view.
+    bool reaches_max = false;  ///< Ends at max_range rather than at the border of the view.
+  };
+
+  const FreeSpaceOptions& options() const { return options_; }
+  FloorPoint origin() const { return origin_; }
+  double angle_min() const { return angle_min_; }
+  double angle_increment() const { return angle_increment_; }
+  std::size_t sectors() const { return rays_.size() / static_cast<std::size_t>(options_.rays); }
+  std::span<const Ray> rays(std::size_t sector) const {
+    return std::span(rays_).subspan(sector * static_cast<std::size_t>(options_.rays),
+                                    static_cast<std::size_t>(options_.rays));
+  }
+
+ private:
+  FreeSpaceOptions options_;
+  FloorPoint origin_;
+  double angle_min_ = 0, angle_increment_ = 0;
+  std::vector<Ray> rays_;
+};
+
+/// Free motion space around the floor point under the camera (DESIGN 5 and 6.7).
+///
+/// Each line of sight is followed over carpet and lines; the first thing that is neither, and is more than noise, ends
+/// it. An accepted ball is no obstacle but hides the floor behind it.
+///
+/// balls    accepted balls, by their box and color in the image
+/// cost     O(pixels on the lines of sight); safe from any thread. source: own, after the AGILO free motion space
+FreeSpace find_free_space(const SectorMap& map, const Segmentation& segmentation, const Surface& surface,
+                          std::span<const Ball> balls);
+
+}  // namespace tassilo

@@ -1,0 +1,128 @@
+#include "tassilo/freespace/free_space.h"
+
+#include <gtest/gtest.h>
+
+#include "tassilo/base/error.h"
+#include "tassilo/camera/test_world.h"
+#include "tassilo/color/train.h"
+#include "tassilo/geometry/angle.h"
+
+namespace tassilo {
+namespace {
+
+using test::World;
+
+/// Surface and segmentation straight from the world's geometry: what the walker makes of perfect colors.
+struct Known {
+  Known(const MountedCamera& camera, const World& world) {
+    const int width = camera.model().width, height = camera.model().height;
+    surface.width = segmentation.width = width;
+    surface.height = segmentation.height = height;
+    for (int r = 0; r < height; ++r)
+      for (int c = 0; c < width; ++c) {
+        const auto ray = camera.ray({double(c), double(r)});
+        const test::Paint paint = ray ? test::look(world, camera.center(), *ray) : test::kHall;
+        const bool floor = ray && ray->z < 0 && (paint.u == test::kCarpet.u || paint.u == test::kWhite.u) &&
+                           camera.center().x - camera.center().z / ray->z * ray->x < world.wall_x &&
+                           paint.u != test::kWhite.u;
+        surface.kinds.push_back(floor ? SurfaceKind::carpet : SurfaceKind::other);
+        segmentation.labels.push_back(0);
+      }
+  }
+  Surface surface;
+  Segmentation segmentation;
+};
+
+/// Where the direction meets the wall or the first robot, from the point under the camera. [m]
+double true_range(const World& world, FloorPoint origin, double angle) {
+  const double cosine = std::cos(angle), sine = std::sin(angle);
+  double range = cosine > 1e-9 ? (world.wall_x - origin.x) / cosine : 1e9;
+  for (const test::Cylinder& robot : world.robots) {
+    const double dx = robot.foot.x - origin.x, dy = robot.foot.y - origin.y;
+    const double along = dx * cosine + dy * sine, off = dx * dx + dy * dy - along * along;
+    if (along > 0 && off < robot.radius * robot.radius)
+      range = std::min(range, along - std::sqrt(robot.radius * robot.radius - off));
+  }
+  return range;
+}
+
+TEST(FindFreeSpace, NeverClaimsMoreThanThereIsAndSeesWhatBlocks) {
+  for (const MountedCamera& camera : test::cameras()) {
+    SCOPED_TRACE(camera.model().width);
+    World world;
+    world.wall_x = 3;
+    world.robots.push_back({.foot = {1.6, 0.3}});
+    const Known known(camera, world);
+    const SectorMap map(camera, {});
+    const FreeSpace space = find_free_space(map, known.segmentation, known.surface, {});
+    ASSERT_EQ(space.ranges.size(), space.states.size());
+    ASSERT_GT(space.ranges.size(), 20u);
+    int blocked = 0;
+    for (std::size_t i = 0; i < space.ranges.size(); ++i) {
+      const double angle = space.angle_min + static_cast<double>(i) * space.angle_increment;
+      const double truth = true_range(world, space.origin, angle);
+      if (space.states[i] == SectorState::unseen) continue;
+      EXPECT_LE(space.ranges[i], 1.02 * truth + 0.02) << degrees(angle) << " deg";
+      if (space.states[i] != SectorState::blocked) continue;
+      ++blocked;
+      double shortest = truth;
+      for (double part = -0.5; part <= 0.5; part += 0.1)
+        shortest = std::min(shortest, true_range(world, space.origin, angle + part * space.angle_increment));
+      EXPECT_GE(space.ranges[i], 0.9 * shortest - 0.05) << degrees(angle) << " deg";
+    }
+    EXPECT_GT(blocked, 20);
+  }
+}
+
+TEST(FindFreeSpace, TheBallIsNoObstacleButHidesTheFloorBehindIt) {
+  const MountedCamera camera = test::cameras()[1];
+  World world;
+  world.wall_x = 4;
+  const FloorPoint place{1.5, 0.0};
+  world.spheres.push_back({{place.x, place.y, 0.1}, 0.1});
+  const Known known(camera, world);
+  Ball ball;
+  ball.center = camera.project({place.x, place.y, 0.1}).value();
+  ball.radius_px = 0.1 / 1.4 * camera.model().fx;
+  const SectorMap map(camera, {});
+  const auto range_ahead = [&](std::span<const Ball> balls) {
+    const FreeSpace space = find_free_space(map, known.segmentation, known.surface, balls);
+    const auto i = static_cast<std::size_t>(std::lround(-space.angle_min / space.angle_increment));
+    return std::pair(space.states[i], space.ranges[i]);
+  };
+  const auto [with_state, with_range] = range_ahead(std::span(&ball, 1));
+  EXPECT_EQ(with_state, SectorState::blocked);  // floor is seen again behind it, up to the wall
+  EXPECT_NEAR(with_range, 4 - camera.center().x, 0.15);
+  const auto [without_state, without_range] = range_ahead({});
+  EXPECT_EQ(without_state, SectorState::blocked);  // not accepted: an obstacle like any other
+  EXPECT_LT(without_range, place.x);
+}
+
+TEST(FindFreeSpace, SectorsWithoutFloorAreUnseen) {
+  CameraModel model = test::cameras()[1].model();
+  // Looks up: no floor at all.
+  const MountedCamera up(model, {.x = 0, .y = 0, .z = 0.5, .roll = 0, .pitch = -1.2, .yaw = 0});
+  const SectorMap map(up, {});
+  const Known known(up, World{});
+  const FreeSpace space = find_free_space(map, known.segmentation, known.surface, {});
+  for (const SectorState state : space.states) EXPECT_EQ(state, SectorState::unseen);
+}
+
+TEST(FindFreeSpace, FloorUpToTheMaximalRangeIsFree) {
+  const MountedCamera camera = test::cameras()[0];
+  World world;
+  world.wall_x = 1e6;
+  const Known known(camera, world);
+  const SectorMap map(camera, {.sector_deg = 5, .rays = 3, .max_range = 3, .noise_px = 2});
+  const FreeSpace space = find_free_space(map, known.segmentation, known.surface, {});
+  const auto ahead = static_cast<std::size_t>(std::lround(-space.angle_min / space.angle_increment));
+  EXPECT_EQ(space.states[ahead], SectorState::free);
+  EXPECT_NEAR(space.ranges[ahead], 3, 0.1);
+}
+
+TEST(FreeSpaceOptions, RefusesWhatIsOutOfRange) {
+  EXPECT_THROW(SectorMap(test::cameras()[0], {.sector_deg = 0}), Error);
+}
+
+}  // namespace
+}  // namespace tassilo

@@ -1,0 +1,144 @@
+#include "tassilo/vision/options.h"
+
+#include <algorithm>
+
+#include "tassilo/base/error.h"
+#include "tassilo/files/nearest_name.h"
+
+namespace tassilo {
+namespace {
+
+struct Option {
+  std::string_view key, unit;
+  double low, high;
+  std::string_view meaning;
+  double& (*real)(VisionOptions&);  ///< Exactly one of these two is set.
+  int& (*whole)(VisionOptions&);
+};
+
+constexpr Option real(std::string_view key, std::string_view unit, double low, double high, std::string_view meaning,
+                      double& (*at)(VisionOptions&)) {
+  return {key, unit, low, high, meaning, at, nullptr};
+}
+constexpr Option whole(std::string_view key, std::string_view unit, double low, double high, std::string_view meaning,
+                       int& (*at)(VisionOptions&)) {
+  return {key, unit, low, high, meaning, nullptr, at};
+}
+
+using V = VisionOptions;
+
+constexpr Option kOptions[] = {
+    real("mount_angle_sigma", "rad", 0, 0.5, "how well the camera's roll, pitch and yaw are known while driving",
+         [](V& o) -> double& { return o.mount_angle_sigma; }),
+    real("mount_height_sigma", "m", 0, 1, "how well the camera's height is known",
+         [](V& o) -> double& { return o.mount_height_sigma; }),
+    real("line_slant", "1", 1, 4, "a field line counts up to so many times its width along a row or column",
+         [](V& o) -> double& { return o.surface.slant; }),
+    whole("line_blur", "px", 0, 20, "rim between line and carpet that is neither color",
+          [](V& o) -> int& { return o.surface.blur_px; }),
+    whole("ball_min_area", "px^2", 1, 10000, "smaller segments of the ball's color are noise",
+          [](V& o) -> int& { return o.ball.min_area_px; }),
+    whole("ball_max", "1", 1, 100, "ball hypotheses reported", [](V& o) -> int& { return o.ball.max_balls; }),
+    real("ball_min_width", "1", 0, 1, "least width of the segment relative to the projected ball",
+         [](V& o) -> double& { return o.ball.min_width; }),
+    real("ball_min_height", "1", 0, 1, "least height of the segment relative to the projected ball",
+         [](V& o) -> double& { return o.ball.min_height; }),
+    real("ball_min_cover", "1", 0, 1, "least share of the visible disc that has the ball's color",
+         [](V& o) -> double& { return o.ball.min_cover; }),
+    real("ball_edge_sigma", "px", 0.01, 10, "uncertainty of one point of the ball's outline",
+         [](V& o) -> double& { return o.ball.edge_sigma_px; }),
+    real("ball_common_sigma", "px", 0.01, 10, "uncertainty that all points of the outline share",
+         [](V& o) -> double& { return o.ball.common_sigma_px; }),
+    real("ball_bound_sigmas", "1", 0.1, 10, "standard deviations between a ball and its near and far bound",
+         [](V& o) -> double& { return o.ball.bound_sigmas; }),
+    whole("goal_min_area", "px^2", 1, 10000, "smaller segments of a goal's color are noise",
+          [](V& o) -> int& { return o.goal.min_area_px; }),
+    real("goal_min_foot_share", "1", 0, 1, "least share of a goal's columns below which the floor shows",
+         [](V& o) -> double& { return o.goal.min_foot_share; }),
+    real("goal_edge_sigma", "px", 0.01, 10, "uncertainty of a post's column",
+         [](V& o) -> double& { return o.goal.edge_sigma_px; }),
+    real("goal_foot_sigma", "px", 0.01, 10, "uncertainty of a post's foot",
+         [](V& o) -> double& { return o.goal.foot_sigma_px; }),
+    whole("robot_min_columns", "px", 1, 1000, "narrower robots are noise",
+          [](V& o) -> int& { return o.robot.min_columns; }),
+    whole("robot_min_rows", "px", 1, 1000, "lower robots are noise", [](V& o) -> int& { return o.robot.min_rows; }),
+    whole("robot_gap", "px", 0, 100, "rim between two colors of a robot that is neither",
+          [](V& o) -> int& { return o.robot.gap_px; }),
+    real("robot_max_step", "m", 0.01, 10, "a foot that jumps further begins another robot",
+         [](V& o) -> double& { return o.robot.max_step; }),
+    real("robot_foot_sigma", "px", 0.01, 10, "uncertainty of a robot's foot",
+         [](V& o) -> double& { return o.robot.foot_sigma_px; }),
+    real("robot_bound_sigmas", "1", 0.1, 10, "standard deviations between a robot and its near and far bound",
+         [](V& o) -> double& { return o.robot.bound_sigmas; }),
+    real("line_tolerance", "px", 0.1, 20, "a point so far from a line still lies on it",
+         [](V& o) -> double& { return o.line.tolerance_px; }),
+    whole("line_min_points", "1", 3, 1000, "rows or columns that show a line",
+          [](V& o) -> int& { return o.line.min_points; }),
+    real("line_min_length", "m", 0.01, 10, "shorter lines are dropped",
+         [](V& o) -> double& { return o.line.min_length; }),
+    real("line_max_gap", "m", 0.01, 10, "longer gaps end a line", [](V& o) -> double& { return o.line.max_gap; }),
+    whole("line_max", "1", 1, 100, "lines reported of each kind", [](V& o) -> int& { return o.line.max_lines; }),
+    real("circle_min_arc", "rad", 0.1, 6.2, "least arc of the centre circle in view",
+         [](V& o) -> double& { return o.line.min_arc; }),
+    real("free_space_sector", "deg", 0.1, 90, "width of a sector of the free motion space",
+         [](V& o) -> double& { return o.free_space.sector_deg; }),
+    whole("free_space_rays", "1", 1, 99, "lines of sight followed per sector",
+          [](V& o) -> int& { return o.free_space.rays; }),
+    real("free_space_max_range", "m", 0.1, 100, "free motion space is not asked for further away",
+         [](V& o) -> double& { return o.free_space.max_range; }),
+    whole("free_space_noise", "px", 0, 100, "so many odd pixels in a row are noise when floor follows",
+          [](V& o) -> int& { return o.free_space.noise_px; }),
+};
+
+}  // namespace
+
+MountSigma VisionOptions::mount_sigma() const {
+  return {.x = 0,
+          .y = 0,
+          .z = mount_height_sigma,
+          .roll = mount_angle_sigma,
+          .pitch = mount_angle_sigma,
+          .yaw = mount_angle_sigma};
+}
+
+void VisionOptions::check() const {
+  surface.check();
+  ball.check();
+  goal.check();
+  robot.check();
+  line.check();
+  free_space.check();
+}
+
+std::vector<OptionInfo> vision_option_infos() {
+  VisionOptions standard;
+  std::vector<OptionInfo> infos;
+  for (const Option& option : kOptions)
+    infos.push_back({option.key, option.unit, option.low, option.high, option.whole != nullptr, option.meaning,
+                     option.whole != nullptr ? option.whole(standard) : option.real(standard)});
+  return infos;
+}
+
+VisionOptions vision_options(std::span<const std::pair<std::string, Setting>> settings) {
+  VisionOptions options;
+  for (const auto& [key, setting] : settings) {
+    const auto* option = std::ranges::find(kOptions, std::string_view(key), &Option::key);
+    if (option == std::end(kOptions)) {
+      std::vector<std::string_view> keys;
+      for (const Option& known : kOptions) keys.push_back(known.key);
+      const auto meant = nearest_name(key, keys);
+      throw Error(setting.place, "unknown key 'vision." + key + "'" +
+                                     (meant ? ", did you mean '" + std::string(*meant) + "'"
+                                            : ", `tassilo info --options` lists the known ones"));
+    }
+    if (option->whole != nullptr)
+      option->whole(options) = static_cast<int>(
+          setting.integer(static_cast<std::int64_t>(option->low), static_cast<std::int64_t>(option->high)));
+    else
+      option->real(options) = setting.number(option->low, option->high);
+  }
+  options.check();
+  return options;
+}
+
+}  // namespace tassilo

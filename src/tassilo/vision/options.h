@@ -1,0 +1,50 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "tassilo/detect/ball.h"
+#include "tassilo/detect/goal.h"
+#include "tassilo/detect/line.h"
+#include "tassilo/detect/robot.h"
+#include "tassilo/files/setting.h"
+#include "tassilo/freespace/free_space.h"
+#include "tassilo/surface/surface.h"
+
+namespace tassilo {
+
+/// Options of all stages. Keys of `vision:` in robot.yaml; to add one, add a row to the table in options.cpp.
+struct VisionOptions {
+  SurfaceOptions surface;  ///< line_width is taken from the field where that says one.
+  BallOptions ball;
+  GoalOptions goal;
+  RobotOptions robot;
+  LineOptions line;
+  FreeSpaceOptions free_space;
+  /// How well the mount is known: what a careful calibration leaves, plus how much the robot shakes and nods while
+  /// driving.
+  double mount_angle_sigma = 0.0002;   ///< Of roll, pitch and yaw each. [rad]
+  double mount_height_sigma = 0.0005;  ///< [m]
+
+  MountSigma mount_sigma() const;
+  void check() const;  ///< Throws Error naming the first option out of range.
+};
+
+/// What people may want to know of an option.
+struct OptionInfo {
+  std::string_view key;  ///< As in robot.yaml.
+  std::string_view unit;
+  double low = 0, high = 0;  ///< Closed range.
+  bool whole = false;        ///< Whole numbers only.
+  std::string_view meaning;
+  double standard = 0;  ///< Value when the key is missing.
+};
+std::vector<OptionInfo> vision_option_infos();
+
+/// Options from the keys below `vision:`. Throws Error with file, line and column for an unknown key or a bad value.
+VisionOptions vision_options(std::span<const std::pair<std::string, Setting>> settings);
+
+}  // namespace tassilo

@@ -1,0 +1,95 @@
+#include "tassilo/vision/vision.h"
+
+#include <array>
+#include <chrono>
+#include <string>
+
+#include "tassilo/base/error.h"
+
+namespace tassilo {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double ms_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// Runs a stage and notes how long it took.
+template <class Stage>
+auto timed(Scene& scene, const char* name, Stage stage) {
+  const auto start = Clock::now();
+  auto result = stage();
+  scene.timing.push_back({name, ms_since(start)});
+  return result;
+}
+
+std::string size_text(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
+
+}  // namespace
+
+Vision::Vision(const VisionSetup& setup) : classifier_(setup.colors), field_(setup.field), options_(setup.options) {
+  setup.colors.check();
+  setup.options.check();
+  if (field_.line_width > 0) options_.surface.line_width = field_.line_width;
+  if (!setup.camera || !setup.mount) return;
+  setup.camera->check();
+  setup.mount->check();
+  const MountedCamera camera(*setup.camera, *setup.mount);
+  optics_ = std::make_unique<const Optics>(camera, options_.mount_sigma());
+  sectors_ = std::make_unique<const SectorMap>(camera, options_.free_space);
+}
+
+Scene Vision::operator()(const Frame& frame, VisionWorkspace& workspace) const {
+  const std::string name = frame.image.empty() ? "frame " + std::to_string(frame.index) : frame.image;
+  const ColorRange trained_for = classifier_.table().range;
+  if (frame.range != trained_for)
+    throw Error(name, "has " + std::string(to_string(frame.range)) + " color range, the color table is for " +
+                          std::string(to_string(trained_for)) +
+                          " range; train the colors on images of this camera, or convert the video");
+  if (optics_) {
+    const CameraModel& camera = optics_->camera.model();
+    if (frame.view.width() != camera.width || frame.view.height() != camera.height)
+      throw Error(name, "is " + size_text(frame.view.width(), frame.view.height()) + ", the camera file is for " +
+                            size_text(camera.width, camera.height) +
+                            "; calibrate for this resolution, or leave `camera:` out of the robot file");
+  }
+
+  Scene scene;
+  scene.frame = frame.index;
+  scene.t = frame.t;
+  scene.image = frame.image;
+  const auto start = Clock::now();
+
+  workspace.segmentation =
+      timed(scene, "segment", [&] { return segment(frame.view, classifier_, std::move(workspace.segmentation)); });
+  const Segmentation& segmentation = workspace.segmentation;
+
+  workspace.surface = timed(scene, "surface", [&] {
+    const std::array colored{&segmentation.of(ColorClass::black), &segmentation.of(ColorClass::blue),
+                             &segmentation.of(ColorClass::cyan),  &segmentation.of(ColorClass::magenta),
+                             &segmentation.of(ColorClass::red),   &segmentation.of(ColorClass::yellow)};
+    return find_surface({.width = segmentation.width,
+                         .height = segmentation.height,
+                         .carpet = &segmentation.of(ColorClass::green),
+                         .white = &segmentation.of(ColorClass::white),
+                         .colored = colored},
+                        optics_ ? &optics_->ground : nullptr, options_.surface, std::move(workspace.surface));
+  });
+
+  const View view{frame.view, segmentation, workspace.surface, field_, optics_.get()};
+  scene.balls = timed(scene, "balls", [&] { return find_balls(view, options_.ball); });
+  scene.goals = timed(scene, "goals", [&] { return find_goals(view, options_.goal); });
+  scene.robots = timed(scene, "robots", [&] { return find_robots(view, options_.robot); });
+  if (sectors_) {
+    Lines lines = timed(scene, "lines", [&] { return find_lines(view, options_.line); });
+    scene.lines = std::move(lines.lines);
+    scene.circles = std::move(lines.circles);
+    scene.free_space = timed(scene, "free_space",
+                             [&] { return find_free_space(*sectors_, segmentation, workspace.surface, scene.balls); });
+  }
+  scene.timing.push_back({"total", ms_since(start)});
+  return scene;
+}
+
+}  // namespace tassilo

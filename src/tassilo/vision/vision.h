@@ -1,0 +1,53 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "tassilo/camera/mount.h"
+#include "tassilo/color/color_table.h"
+#include "tassilo/color/segment.h"
+#include "tassilo/detect/view.h"
+#include "tassilo/image/frame.h"
+#include "tassilo/scene/scene.h"
+#include "tassilo/vision/options.h"
+
+namespace tassilo {
+
+/// All that stays the same from frame to frame.
+struct VisionSetup {
+  ColorTable colors;
+  FieldModel field;
+  std::optional<CameraModel> camera;  ///< Without camera or mount, all floor values stay empty.
+  std::optional<CameraMount> mount;
+  VisionOptions options;
+};
+
+/// Memory that is used again from frame to frame, and what the last frame left in it, to be shown or stored.
+struct VisionWorkspace {
+  Segmentation segmentation;
+  Surface surface;
+};
+
+/// The one place where stages are put in order: from frame to scene.
+///
+/// Immutable after construction; one call at a time per workspace, from any thread.
+class Vision {
+ public:
+  /// Throws Error when options, camera or table are out of range.
+  explicit Vision(const VisionSetup& setup);
+
+  /// Sees one frame. `timing` has a row for each stage and "total"; pose stays empty.
+  /// Throws Error when the frame's size is not the camera's, or its range is not the table's.
+  Scene operator()(const Frame& frame, VisionWorkspace& workspace) const;
+
+  const Optics* optics() const { return optics_.get(); }
+
+ private:
+  Classifier classifier_;
+  FieldModel field_;
+  VisionOptions options_;
+  std::unique_ptr<const Optics> optics_;
+  std::unique_ptr<const SectorMap> sectors_;
+};
+
+}  // namespace tassilo
