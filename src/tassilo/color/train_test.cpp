@@ -59,7 +59,9 @@ TEST(TrainColors, NamesDarkerShadesThanItsSamples) {
   std::mt19937 random(2);
   const ColorTable table = train_colors(samples_of_all(0.95, random), ColorRange::limited);
   for (const Paint& paint : kPaints)
-    if (paint.color != ColorClass::white) EXPECT_GT(recall(table, paint, 0.6, random), 0.95) << to_string(paint.color);
+    if (paint.color != ColorClass::white) {
+      EXPECT_GT(recall(table, paint, 0.6, random), 0.95) << to_string(paint.color);
+    }
 }
 
 TEST(TrainColors, AFewWrongPixelsInAPolygonChangeLittle) {
@@ -132,10 +134,11 @@ TEST(DistanceTo, EqualsBruteForce) {
       double nearest = std::numeric_limits<double>::infinity();
       for (const PixelRun& run : cells.runs())
         for (int x = run.begin; x < run.end; ++x) nearest = std::min(nearest, std::hypot(x - u, run.row - v));
-      if (cells.empty())
+      if (cells.empty()) {
         EXPECT_EQ(distance(u, v), nearest);
-      else
+      } else {
         EXPECT_NEAR(distance(u, v), nearest, 1e-9);
+      }
     }
   }
 }

@@ -9,6 +9,7 @@
 #include "tassilo/base/error.h"
 #include "tassilo/detect/edge.h"
 #include "tassilo/detect/sphere_fit.h"
+#include "tassilo/geometry/angle.h"
 #include "tassilo/region/algebra.h"
 #include "tassilo/region/components.h"
 #include "tassilo/region/features.h"
@@ -57,8 +58,7 @@ std::vector<PixelPoint> positions(const std::vector<RimPoint>& rim, bool with_hi
 
 /// A first guess: the middle of the segment at the ball's height above the floor; if its ray does not go down that far,
 /// as far away as its size says.
-std::optional<RestingSphere> first_guess(const View& view, const PixelBox& box) {
-  const MountedCamera& camera = view.optics->camera;
+std::optional<RestingSphere> first_guess(const View& view, const MountedCamera& camera, const PixelBox& box) {
   const double radius = view.field.ball.radius.middle();
   const PixelPoint middle{(box.x0 + box.x1 - 1) / 2.0, (box.y0 + box.y1 - 1) / 2.0};
   const double furthest = longest_distance(view.field);
@@ -75,14 +75,15 @@ std::optional<RestingSphere> first_guess(const View& view, const PixelBox& box) 
 }
 
 /// Sub-pixel edges along the outline of a sphere; left out: beyond the border and where a robot hides the rim.
-std::vector<PixelPoint> outline_edges(const View& view, const RestingSphere& sphere, bool with_hidden) {
+std::vector<PixelPoint> outline_edges(const View& view, const MountedCamera& camera, const RestingSphere& sphere,
+                                      bool with_hidden) {
   std::vector<PixelPoint> edges;
-  const auto disc = project_disc(view.optics->camera, sphere);
+  const auto disc = project_disc(camera, sphere);
   if (!disc) return edges;
   // Far enough for both plateaus, near enough to stay on the ball and beside it.
   const double reach = std::clamp(0.35 * disc->radius_px, 2.0, 4.0);
   const int count = static_cast<int>(std::clamp(2 * std::numbers::pi * disc->radius_px, 16.0, 64.0));
-  for (const OutlinePoint& p : outline(view.optics->camera, sphere, count)) {
+  for (const OutlinePoint& p : outline(camera, sphere, count)) {
     bool usable = true;
     for (const double along : {-reach, 1.0, reach}) {
       const PixelPoint q = p.at + along * p.outward;
@@ -106,10 +107,10 @@ struct DiscView {
   int foot_floor = 0, foot_hidden = 0;  ///< Of these, on the floor; on a robot.
 };
 
-DiscView look_at_disc(const View& view, const RestingSphere& sphere, ColorClass color) {
+DiscView look_at_disc(const View& view, const MountedCamera& camera, const RestingSphere& sphere) {
   DiscView look;
   std::vector<PixelPoint> polygon;
-  for (const OutlinePoint& p : outline(view.optics->camera, sphere, 48)) {
+  for (const OutlinePoint& p : outline(camera, sphere, 48)) {
     polygon.push_back(p.at);
     if (p.outward.y < 0.5) continue;  // the lower third of the rim
     for (const double along : {2.0, 3.0}) {
@@ -131,7 +132,7 @@ DiscView look_at_disc(const View& view, const RestingSphere& sphere, ColorClass 
         continue;
       }
       ++look.disc;
-      look.own += view.color(c, run.row) == color;
+      look.own += view.color(c, run.row) == ball_color(view.field);
       look.hidden += is_robot_color(view.color(c, run.row));
     }
   return look;
@@ -153,8 +154,7 @@ double tangent_distance(double eye_height, double radius, double depression) {
 
 /// DESIGN 6.5: the lowest pixel of the segment below the centre bounds the distance from above, the highest pixel of
 /// floor below it from below. Nothing where either is hidden or cut.
-std::optional<DistanceBounds> tangent_bounds(const View& view, const SphereFit& fit, ColorClass color) {
-  const MountedCamera& camera = view.optics->camera;
+std::optional<DistanceBounds> tangent_bounds(const View& view, const MountedCamera& camera, const SphereFit& fit) {
   // Right, top, left, bottom: the bottom lies straight below the centre, where the tangent is.
   const auto around = outline(camera, fit.sphere, 4);
   if (around.size() != 4) return std::nullopt;
@@ -164,7 +164,7 @@ std::optional<DistanceBounds> tangent_bounds(const View& view, const SphereFit& 
     const PixelPoint p = lowest.at + along * lowest.outward;
     const int c = static_cast<int>(std::lround(p.x)), r = static_cast<int>(std::lround(p.y));
     if (!view.inside(c, r)) return std::nullopt;
-    if (view.color(c, r) == color) {
+    if (view.color(c, r) == ball_color(view.field)) {
       last_own = p;
     } else if (is_robot_color(view.color(c, r))) {
       return std::nullopt;
@@ -191,37 +191,54 @@ std::optional<DistanceBounds> tangent_bounds(const View& view, const SphereFit& 
   return DistanceBounds{std::min({a, b, c, d}), std::max({a, b, c, d})};
 }
 
-std::optional<Ball> ball_on_floor(const View& view, const Region& segment, const BallOptions& options) {
-  const MountedCamera& camera = view.optics->camera;
-  const ColorClass color = ball_color(view.field);
-  const PixelBox box = bounding_box(segment);
-  const auto guess = first_guess(view, box);
-  if (!guess) return std::nullopt;
+/// How a segment is looked at: with the mount as calibrated, or with the robot nodding; with or without the rim where a
+/// robot's colors begin.
+struct Attempt {
+  const MountedCamera& camera;
+  double nod_sigma = 0;      ///< Of the camera's pitch, beyond what the mount's calibration leaves. [rad]
+  bool with_hidden = false;
+};
 
-  const std::vector<RimPoint> rim = rim_of(view, fill_holes(segment));
-  const auto open = static_cast<std::size_t>(std::ranges::count(rim, false, &RimPoint::hidden));
-  // A robot behind the ball looks like one before it: with hardly any open rim, every point of it is better than none.
-  const bool with_hidden = open < std::max<std::size_t>(6, rim.size() / 4);
-  const auto coarse_edges = positions(rim, with_hidden);
+/// Could a segment in this box be a ball that rests on the floor? Rough, to save the fit for those that could.
+bool has_plausible_size(const View& view, const MountedCamera& camera, const PixelBox& box) {
+  const auto guess = first_guess(view, camera, box);
+  if (!guess || norm(guess->foot) > 1.5 * longest_distance(view.field)) return false;
+  const auto disc = project_disc(camera, *guess);
+  if (!disc) return true;  // so near that it surrounds the camera's axis
+  return std::max(box.width(), box.height()) <= 2 * 1.7 * disc->radius_px + 4;
+}
+
+std::optional<SphereFit> fit_segment(const View& view, const Attempt& attempt, const std::vector<RimPoint>& rim,
+                                     const PixelBox& box, const BallOptions& options) {
+  const auto guess = first_guess(view, attempt.camera, box);
+  if (!guess) return std::nullopt;
+  const auto coarse_edges = positions(rim, attempt.with_hidden);
   if (coarse_edges.size() < 3) return std::nullopt;
   SphereFitOptions fitting{.radius = view.field.ball.radius, .edge_sigma_px = 1.0, .iterations = 20};
-  auto fit = fit_resting_sphere(camera, coarse_edges, *guess, fitting);
+  auto fit = fit_resting_sphere(attempt.camera, coarse_edges, *guess, fitting);
   if (!fit) return std::nullopt;
-
-  const auto coarse_disc = project_disc(camera, fit->sphere);
-  if (!coarse_disc || fit->rms_px > std::max(1.5, 0.25 * coarse_disc->radius_px)) return std::nullopt;
+  const auto disc = project_disc(attempt.camera, fit->sphere);
+  if (!disc || fit->rms_px > std::max(1.5, 0.25 * disc->radius_px)) return std::nullopt;
   fitting.edge_sigma_px = options.edge_sigma_px;
   for (int round = 0; round < 2; ++round) {
-    const auto edges = outline_edges(view, fit->sphere, with_hidden);
+    const auto edges = outline_edges(view, attempt.camera, fit->sphere, attempt.with_hidden);
     if (edges.size() < 6) break;
-    if (const auto finer = fit_resting_sphere(camera, edges, fit->sphere, fitting)) fit = finer;
+    if (const auto finer = fit_resting_sphere(attempt.camera, edges, fit->sphere, fitting)) fit = finer;
   }
+  return fit;
+}
 
+std::optional<Ball> try_ball(const View& view, const Attempt& attempt, const Region& segment,
+                             const std::vector<RimPoint>& rim, const BallOptions& options) {
+  const PixelBox box = bounding_box(segment);
+  const MountedCamera& camera = attempt.camera;
+  const auto fit = fit_segment(view, attempt, rim, box, options);
+  if (!fit) return std::nullopt;
   const auto disc = project_disc(camera, fit->sphere);
   if (!disc) return std::nullopt;
   const double distance_m = norm(fit->sphere.foot);
   if (distance_m > longest_distance(view.field)) return std::nullopt;
-  const DiscView look = look_at_disc(view, fit->sphere, color);
+  const DiscView look = look_at_disc(view, camera, fit->sphere);
   const int open_disc = look.disc - look.hidden;
   if (look.own < options.min_area_px || look.own < options.min_cover * open_disc) return std::nullopt;
   const int whole = look.disc + look.clipped;
@@ -244,23 +261,75 @@ std::optional<Ball> ball_on_floor(const View& view, const Region& segment, const
   const double cover = open_disc > 0 ? static_cast<double>(look.own) / open_disc : 0;
   const double seen = static_cast<double>(look.own) / std::max(1, whole);
   const double roundness = std::exp(-fit->rms_px * fit->rms_px / (0.08 * disc->radius_px * disc->radius_px + 0.5));
-  ball.confidence = std::clamp(cover * roundness * (0.5 + 0.5 * foot_share) * (0.4 + 0.6 * seen), 0.0, 1.0);
+  // Nodding excuses much: half of the trust.
+  const double steady = attempt.nod_sigma > 0 ? 0.5 : 1;
+  ball.confidence =
+      std::clamp(steady * cover * roundness * (0.5 + 0.5 * foot_share) * (0.4 + 0.6 * seen), 0.0, 1.0);
 
   BallOnFloor floor;
   floor.position.mean = fit->sphere.foot;
   floor.position.covariance = fit->covariance.topLeftCorner<2, 2>();
+  MountSigma mount_sigma = view.optics->mount_sigma;
+  mount_sigma.pitch = std::hypot(mount_sigma.pitch, attempt.nod_sigma);
   if (const auto common =
-          floor_gaussian(camera, disc->center, options.common_sigma_px, view.optics->mount_sigma, fit->sphere.radius))
+          floor_gaussian(camera, disc->center, options.common_sigma_px, mount_sigma, fit->sphere.radius))
     floor.position.covariance += common->covariance;
   const Eigen::Vector2d sight(fit->sphere.foot.x / distance_m, fit->sphere.foot.y / distance_m);
   const double sigma = std::sqrt(sight.dot(floor.position.covariance * sight));
   floor.bounds = {std::max(0.0, distance_m - options.bound_sigmas * sigma), distance_m + options.bound_sigmas * sigma};
-  if (const auto bounds = tangent_bounds(view, *fit, color)) {
+  if (const auto bounds = tangent_bounds(view, camera, *fit)) {
     floor.bounds.near = std::min(bounds->near, floor.bounds.near);
     floor.bounds.far = std::max(bounds->far, floor.bounds.far);
   }
   ball.floor = floor;
   return ball;
+}
+
+/// Might the segment stand on the floor? Below its lowest pixels there is floor, something that may hide it, or no more
+/// image.
+bool may_stand(const View& view, const PixelBox& box) {
+  for (int r = box.y1; r < box.y1 + 4; ++r)
+    for (int c = box.x0 + box.width() / 4; c <= box.x1 - 1 - box.width() / 4; ++c)
+      if (!view.inside(c, r) || view.surface.is_floor(c, r) || is_robot_color(view.color(c, r))) return true;
+  return false;
+}
+
+/// With the mount as calibrated.
+std::optional<Ball> steady_ball(const View& view, const Region& segment, const BallOptions& options) {
+  const MountedCamera& camera = view.optics->camera;
+  if (!has_plausible_size(view, camera, bounding_box(segment))) return std::nullopt;
+  const std::vector<RimPoint> rim = rim_of(view, fill_holes(segment));
+  const auto open = static_cast<std::size_t>(std::ranges::count(rim, false, &RimPoint::hidden));
+  // A robot behind the ball looks like one before it: with hardly any open rim, every point of it is better than none.
+  const bool hardly_open = open < std::max<std::size_t>(6, rim.size() / 4);
+  if (auto ball = try_ball(view, {.camera = camera, .with_hidden = hardly_open}, segment, rim, options)) return ball;
+  if (hardly_open || open == rim.size()) return std::nullopt;
+  return try_ball(view, {.camera = camera, .with_hidden = true}, segment, rim, options);
+}
+
+/// With the robot nodding, the smallest angle that explains the segment.
+std::optional<Ball> nodding_ball(const View& view, std::span<const MountedCamera> nodding, const Region& segment,
+                                 const BallOptions& options) {
+  std::vector<RimPoint> rim;
+  for (const MountedCamera& camera : nodding) {
+    if (!has_plausible_size(view, camera, bounding_box(segment))) continue;
+    if (rim.empty()) rim = rim_of(view, fill_holes(segment));
+    const Attempt attempt{.camera = camera, .nod_sigma = radians(options.nod_step_deg), .with_hidden = true};
+    if (auto ball = try_ball(view, attempt, segment, rim, options)) return ball;
+  }
+  return std::nullopt;
+}
+
+/// The camera as it may look while the robot shakes, small angles first.
+std::vector<MountedCamera> nodding_cameras(const MountedCamera& camera, const BallOptions& options) {
+  std::vector<MountedCamera> cameras;
+  for (double nod = options.nod_step_deg; nod <= options.max_nod_deg + 1e-9; nod += options.nod_step_deg)
+    for (const double sign : {1.0, -1.0}) {
+      CameraMount mount = camera.mount();
+      mount.pitch += sign * radians(nod);
+      cameras.emplace_back(camera.model(), mount);
+    }
+  return cameras;
 }
 
 /// Without a camera: round, and carpet below.
@@ -311,16 +380,34 @@ void BallOptions::check() const {
   positive("edge_sigma_px", edge_sigma_px);
   positive("common_sigma_px", common_sigma_px);
   positive("bound_sigmas", bound_sigmas);
+  positive("nod_step_deg", nod_step_deg);
+  if (!(max_nod_deg >= 0 && max_nod_deg <= 10))
+    throw Error("ball.max_nod_deg", "is " + std::to_string(max_nod_deg) + ", must be in [0, 10]");
 }
 
 std::vector<Ball> find_balls(const View& view, const BallOptions& options) {
   // A line before or a highlight on the ball may split it by a pixel.
   const Region joined = closing(view.segmentation.of(ball_color(view.field)), rectangle(3, 3));
+  std::vector<Region> segments = components(joined);
+  std::erase_if(segments, [&](const Region& segment) {
+    // One sample of chroma spans two columns: what is no wider is one sample's noise.
+    return area(segment) < options.min_area_px || bounding_box(segment).width() < 3;
+  });
   std::vector<Ball> balls;
-  for (const Region& segment : components(joined)) {
-    if (area(segment) < options.min_area_px) continue;
-    auto ball = view.optics != nullptr ? ball_on_floor(view, segment, options) : ball_in_image(view, segment, options);
-    if (ball) balls.push_back(std::move(*ball));
+  const auto collect = [&](auto look) {
+    for (const Region& segment : segments)
+      if (auto ball = look(segment)) balls.push_back(std::move(*ball));
+  };
+  if (view.optics == nullptr) {
+    collect([&](const Region& segment) { return ball_in_image(view, segment, options); });
+  } else {
+    std::erase_if(segments, [&](const Region& segment) { return !may_stand(view, bounding_box(segment)); });
+    collect([&](const Region& segment) { return steady_ball(view, segment, options); });
+    // A ball that fits the mount as calibrated says that the robot does not nod.
+    if (balls.empty() && !segments.empty()) {
+      const std::vector<MountedCamera> nodding = nodding_cameras(view.optics->camera, options);
+      collect([&](const Region& segment) { return nodding_ball(view, nodding, segment, options); });
+    }
   }
   std::ranges::stable_sort(balls, std::greater<>{}, &Ball::confidence);
   // Two pieces of one ball are one ball.

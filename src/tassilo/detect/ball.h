@@ -21,6 +21,10 @@ struct BallOptions {
   double common_sigma_px = 0.1;
   /// Bounds on the distance reach this many standard deviations beyond the tangents' own. [1], > 0
   double bound_sigmas = 2.5;
+  /// While driving the robot nods, and a ball's size no longer fits where it seems to lie. What fits no ball with the
+  /// mount as calibrated may fit one with the camera pitched by up to this angle, tried in steps; trusted half as much,
+  /// with the step as uncertainty. 0: never. [deg], 0 .. 10; > 0
+  double max_nod_deg = 2.0, nod_step_deg = 0.5;
   void check() const;  ///< Throws Error naming the first field out of range.
 };
 

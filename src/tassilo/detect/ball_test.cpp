@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
+
 #include "tassilo/base/error.h"
 #include "tassilo/detect/sphere_fit.h"
 #include "tassilo/detect/test_view.h"
@@ -12,7 +14,11 @@ namespace {
 using test::Seen;
 using test::World;
 
-World ball_at(FloorPoint foot, double radius) { return {.spheres = {{{foot.x, foot.y, radius}, radius}}}; }
+World ball_at(FloorPoint foot, double radius) {
+  World world;
+  world.spheres.push_back({{foot.x, foot.y, radius}, radius});
+  return world;
+}
 
 /// Places each test camera sees well.
 const FloorPoint kPlaces[] = {{0.9, 0.1}, {1.5, -0.4}, {2.5, 0.6}, {3.8, -0.9}};
