@@ -19,26 +19,26 @@ SectorMap::Ray follow(const MountedCamera& camera, FloorPoint origin, double ang
     return camera.project({p.x, p.y, 0});
   };
   const int width = camera.model().width, height = camera.model().height;
-  double step = 0.002;
+  double step = 0;
   bool entered = false;
-  for (double range = 0.01; range <= max_range; range += step) {
-    const auto pixel = pixel_at(range), next = pixel_at(range + step);
-    if (pixel && next) {
-      // Half a pixel further each time: no pixel on the way is missed.
-      const double moved = distance(*pixel, *next);
-      step = std::clamp(moved > 1e-9 ? step * 0.5 / moved : 2 * step, 5e-4, 0.2);
-    }
+  for (double range = 0.02; range <= max_range; range += step) {
+    const auto pixel = pixel_at(range);
     const int c = pixel ? static_cast<int>(std::lround(pixel->x)) : -1;
     const int r = pixel ? static_cast<int>(std::lround(pixel->y)) : -1;
     if (c < 0 || r < 0 || c >= width || r >= height) {
       if (entered) return ray;  // left the view
+      step = 0.01 * range;      // on the way to it
       continue;
     }
     entered = true;
+    // Half a pixel further each time: no pixel on the way is missed.
+    constexpr double ahead = 1e-3;
+    const auto next = pixel_at(range + ahead);
+    const double per_meter = next ? distance(*pixel, *next) / ahead : 0;
+    step = std::clamp(0.5 / std::max(per_meter, 1e-9), 5e-4, 0.2);
     if (ray.steps.empty() || ray.steps.back().column != c || ray.steps.back().row != r)
       ray.steps.push_back({static_cast<std::int16_t>(c), static_cast<std::int16_t>(r), static_cast<float>(range)});
   }
-  ray.reaches_max = entered;
   return ray;
 }
 
@@ -49,8 +49,8 @@ struct RayEnd {
 
 class Walker {
  public:
-  Walker(const SectorMap& map, const Segmentation& segmentation, const Surface& surface, std::span<const Ball> balls)
-      : map_(map), segmentation_(segmentation), surface_(surface), balls_(balls) {}
+  Walker(const SectorMap& map, const Surface& surface, std::span<const Ball> balls)
+      : map_(map), surface_(surface), balls_(balls) {}
 
   RayEnd operator()(const SectorMap::Ray& ray) const {
     if (ray.steps.empty()) return {};
@@ -83,7 +83,6 @@ class Walker {
   }
 
   const SectorMap& map_;
-  const Segmentation& segmentation_;
   const Surface& surface_;
   std::span<const Ball> balls_;
 };
@@ -129,13 +128,13 @@ SectorMap::SectorMap(const MountedCamera& camera, const FreeSpaceOptions& option
   if (rays_.empty()) angle_min_ = 0;
 }
 
-FreeSpace find_free_space(const SectorMap& map, const Segmentation& segmentation, const Surface& surface,
+FreeSpace find_free_space(const SectorMap& map, const Surface& surface,
                           std::span<const Ball> balls) {
   FreeSpace space;
   space.origin = map.origin();
   space.angle_min = map.angle_min();
   space.angle_increment = map.angle_increment();
-  const Walker walk(map, segmentation, surface, balls);
+  const Walker walk(map, surface, balls);
   for (std::size_t sector = 0; sector < map.sectors(); ++sector) {
     RayEnd shortest;
     for (const SectorMap::Ray& ray : map.rays(sector)) {

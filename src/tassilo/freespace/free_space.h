@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "tassilo/camera/mount.h"
-#include "tassilo/color/segment.h"
 #include "tassilo/scene/scene.h"
 #include "tassilo/surface/surface.h"
 
@@ -31,7 +30,6 @@ class SectorMap {
   };
   struct Ray {
     std::vector<Step> steps;   ///< Empty where no floor of this direction is in view.
-    bool reaches_max = false;  ///< Ends at max_range rather than at the border of the view.
   };
 
   const FreeSpaceOptions& options() const { return options_; }
@@ -58,7 +56,7 @@ class SectorMap {
 ///
 /// balls    accepted balls, by their box and color in the image
 /// cost     O(pixels on the lines of sight); safe from any thread. source: own, after the AGILO free motion space
-FreeSpace find_free_space(const SectorMap& map, const Segmentation& segmentation, const Surface& surface,
+FreeSpace find_free_space(const SectorMap& map, const Surface& surface,
                           std::span<const Ball> balls);
 
 }  // namespace tassilo

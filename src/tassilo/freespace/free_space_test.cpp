@@ -4,7 +4,6 @@
 
 #include "tassilo/base/error.h"
 #include "tassilo/camera/test_world.h"
-#include "tassilo/color/train.h"
 #include "tassilo/geometry/angle.h"
 
 namespace tassilo {
@@ -12,12 +11,12 @@ namespace {
 
 using test::World;
 
-/// Surface and segmentation straight from the world's geometry: what the walker makes of perfect colors.
+/// The surface straight from the world's geometry: what the walker makes of perfect colors.
 struct Known {
   Known(const MountedCamera& camera, const World& world) {
     const int width = camera.model().width, height = camera.model().height;
-    surface.width = segmentation.width = width;
-    surface.height = segmentation.height = height;
+    surface.width = width;
+    surface.height = height;
     for (int r = 0; r < height; ++r)
       for (int c = 0; c < width; ++c) {
         const auto ray = camera.ray({double(c), double(r)});
@@ -25,12 +24,10 @@ struct Known {
         const bool floor = ray && ray->z < 0 && (paint.u == test::kCarpet.u || paint.u == test::kWhite.u) &&
                            camera.center().x - camera.center().z / ray->z * ray->x < world.wall_x &&
                            paint.u != test::kWhite.u;
-        surface.kinds.push_back(floor ? SurfaceKind::carpet : SurfaceKind::other);
-        segmentation.labels.push_back(0);
+        surface.kinds.push_back(floor ? SurfaceKind::carpet : SurfaceKind::object);
       }
   }
   Surface surface;
-  Segmentation segmentation;
 };
 
 /// Where the direction meets the wall or the first robot, from the point under the camera. [m]
@@ -54,7 +51,7 @@ TEST(FindFreeSpace, NeverClaimsMoreThanThereIsAndSeesWhatBlocks) {
     world.robots.push_back({.foot = {1.6, 0.3}});
     const Known known(camera, world);
     const SectorMap map(camera, {});
-    const FreeSpace space = find_free_space(map, known.segmentation, known.surface, {});
+    const FreeSpace space = find_free_space(map, known.surface, {});
     ASSERT_EQ(space.ranges.size(), space.states.size());
     ASSERT_GT(space.ranges.size(), 20u);
     int blocked = 0;
@@ -86,7 +83,7 @@ TEST(FindFreeSpace, TheBallIsNoObstacleButHidesTheFloorBehindIt) {
   ball.radius_px = 0.1 / 1.4 * camera.model().fx;
   const SectorMap map(camera, {});
   const auto range_ahead = [&](std::span<const Ball> balls) {
-    const FreeSpace space = find_free_space(map, known.segmentation, known.surface, balls);
+    const FreeSpace space = find_free_space(map, known.surface, balls);
     const auto i = static_cast<std::size_t>(std::lround(-space.angle_min / space.angle_increment));
     return std::pair(space.states[i], space.ranges[i]);
   };
@@ -104,7 +101,7 @@ TEST(FindFreeSpace, SectorsWithoutFloorAreUnseen) {
   const MountedCamera up(model, {.x = 0, .y = 0, .z = 0.5, .roll = 0, .pitch = -1.2, .yaw = 0});
   const SectorMap map(up, {});
   const Known known(up, World{});
-  const FreeSpace space = find_free_space(map, known.segmentation, known.surface, {});
+  const FreeSpace space = find_free_space(map, known.surface, {});
   for (const SectorState state : space.states) EXPECT_EQ(state, SectorState::unseen);
 }
 
@@ -114,7 +111,7 @@ TEST(FindFreeSpace, FloorUpToTheMaximalRangeIsFree) {
   world.wall_x = 1e6;
   const Known known(camera, world);
   const SectorMap map(camera, {.sector_deg = 5, .rays = 3, .max_range = 3, .noise_px = 2});
-  const FreeSpace space = find_free_space(map, known.segmentation, known.surface, {});
+  const FreeSpace space = find_free_space(map, known.surface, {});
   const auto ahead = static_cast<std::size_t>(std::lround(-space.angle_min / space.angle_increment));
   EXPECT_EQ(space.states[ahead], SectorState::free);
   EXPECT_NEAR(space.ranges[ahead], 3, 0.1);

@@ -6,17 +6,15 @@
 
 #include "tassilo/base/contract.h"
 #include "tassilo/base/error.h"
+#include "tassilo/region/algebra.h"
 
 namespace tassilo {
 namespace {
 
-/// Colors before the neighborhood was asked.
-enum Paint : std::uint8_t { unknown, carpet, white, colored };
-
-void paint(std::vector<std::uint8_t>& map, int width, const Region& region, Paint value) {
+void paint(Surface& surface, const Region& region, SurfaceKind kind) {
   for (const PixelRun& run : region.runs()) {
-    const auto row = map.begin() + std::ptrdiff_t{run.row} * width;
-    std::fill(row + run.begin, row + run.end, static_cast<std::uint8_t>(value));
+    const auto row = surface.kinds.begin() + std::ptrdiff_t{run.row} * surface.width;
+    std::fill(row + run.begin, row + run.end, kind);
   }
 }
 
@@ -45,6 +43,91 @@ class LineSize {
   const SurfaceOptions& options_;
 };
 
+/// A stretch of pixels along a row or a column with carpet before and after it.
+struct Gap {
+  int column, row;  ///< First pixel.
+  int length;
+  bool along_row;
+};
+
+class Judge {
+ public:
+  Judge(Surface& surface, const LineSize& size) : surface_(surface), size_(size) {}
+
+  /// Narrow enough for a line? Then it is floor.
+  bool accept(const Gap& gap) {
+    if (!is_narrow(gap, 1)) return false;
+    mark(gap);
+    return true;
+  }
+
+  /// Where lines meet, white is wider than a line, but lines bound it: pieces of the gap between lines.
+  void accept_between_lines(const Gap& gap) {
+    int from = 0;
+    for (int k = 0; k <= gap.length; ++k) {
+      if (k < gap.length && kind(gap, k) != SurfaceKind::line) continue;
+      const Gap piece{gap.along_row ? gap.column + from : gap.column, gap.along_row ? gap.row : gap.row + from, k - from,
+                      gap.along_row};
+      if (piece.length > 0 && is_narrow(piece, 2)) mark(piece);
+      from = k + 1;
+    }
+  }
+
+  /// Is there anything in the gap that is certainly no floor?
+  bool has_object(const Gap& gap) const {
+    for (int k = 0; k < gap.length; ++k)
+      if (kind(gap, k) == SurfaceKind::object) return true;
+    return false;
+  }
+
+ private:
+  SurfaceKind& kind(const Gap& gap, int k) {
+    const int column = gap.along_row ? gap.column + k : gap.column, row = gap.along_row ? gap.row : gap.row + k;
+    return surface_.kinds[static_cast<std::size_t>(row * surface_.width + column)];
+  }
+  SurfaceKind kind(const Gap& gap, int k) const { return const_cast<Judge*>(this)->kind(gap, k); }
+
+  bool is_narrow(const Gap& gap, double wider) const {
+    const int middle = gap.length / 2;
+    return gap.length <= wider * (gap.along_row ? size_.along_row(gap.column + middle, gap.row)
+                                                : size_.along_column(gap.column, gap.row + middle));
+  }
+
+  void mark(const Gap& gap) {
+    bool has_white = false;
+    for (int k = 0; k < gap.length; ++k) {
+      const SurfaceKind now = kind(gap, k);
+      has_white = has_white || now == SurfaceKind::wall || now == SurfaceKind::line;
+    }
+    for (int k = 0; k < gap.length; ++k) kind(gap, k) = has_white ? SurfaceKind::line : SurfaceKind::carpet;
+  }
+
+  Surface& surface_;
+  const LineSize& size_;
+};
+
+/// Gaps between carpet runs of one row.
+void gaps_along_rows(const Region& carpet, std::vector<Gap>& gaps) {
+  const auto runs = carpet.runs();
+  for (std::size_t i = 1; i < runs.size(); ++i)
+    if (runs[i].row == runs[i - 1].row)
+      gaps.push_back({runs[i - 1].end, runs[i].row, runs[i].begin - runs[i - 1].end, true});
+}
+
+/// Gaps below carpet pixels down to the next carpet pixel, or to the lower border: there the carpet goes on.
+void gaps_along_columns(const Surface& surface, const Region& carpet, std::vector<Gap>& gaps) {
+  const Region below = clipped(difference(translated(carpet, {.columns = 0, .rows = 1}), carpet),
+                               {0, 0, surface.width, surface.height});
+  for (const PixelRun& run : below.runs())
+    for (int c = run.begin; c < run.end; ++c) {
+      int end = run.row;
+      while (end < surface.height && surface.at(c, end) != SurfaceKind::carpet && surface.at(c, end) != SurfaceKind::object)
+        ++end;
+      if (end < surface.height && surface.at(c, end) == SurfaceKind::object) continue;
+      gaps.push_back({c, run.row, end - run.row, false});
+    }
+}
+
 }  // namespace
 
 void SurfaceOptions::check() const {
@@ -56,76 +139,24 @@ void SurfaceOptions::check() const {
 Surface find_surface(const SurfaceInput& input, const GroundMap* ground, const SurfaceOptions& options,
                      Surface recycled) {
   expects(input.carpet != nullptr && input.white != nullptr, "surface: carpet and white are given");
-  const int width = input.width, height = input.height;
-  const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  thread_local std::vector<std::uint8_t> map;
-  map.assign(pixels, unknown);
-  paint(map, width, *input.carpet, carpet);
-  paint(map, width, *input.white, white);
-  for (const Region* region : input.colored) paint(map, width, *region, colored);
-
   Surface surface = std::move(recycled);
-  surface.width = width;
-  surface.height = height;
-  surface.kinds.resize(pixels);
-  for (std::size_t i = 0; i < pixels; ++i)
-    surface.kinds[i] = map[i] == carpet  ? SurfaceKind::carpet
-                       : map[i] == white ? SurfaceKind::wall
-                                         : SurfaceKind::other;
+  surface.width = input.width;
+  surface.height = input.height;
+  surface.kinds.assign(static_cast<std::size_t>(input.width) * static_cast<std::size_t>(input.height), SurfaceKind::unknown);
+  paint(surface, *input.carpet, SurfaceKind::carpet);
+  paint(surface, *input.white, SurfaceKind::wall);
+  for (const Region* region : input.colored) paint(surface, *region, SurfaceKind::object);
 
+  thread_local std::vector<Gap> gaps, wide;
+  gaps.clear();
+  wide.clear();
+  gaps_along_columns(surface, *input.carpet, gaps);  // before any gap along a row becomes carpet
+  gaps_along_rows(*input.carpet, gaps);
   const LineSize size(input, ground, options);
-  const auto kind_at = [&](int c, int r) -> SurfaceKind& {
-    return surface.kinds[static_cast<std::size_t>(r * width + c)];
-  };
-  const auto mark = [&](int c, int r, bool line) {
-    SurfaceKind& kind = kind_at(c, r);
-    if (line || kind == SurfaceKind::other) kind = line ? SurfaceKind::line : SurfaceKind::carpet;
-  };
-  /// Stretches of white or unknown along one row or column, between what `bounds` it.
-  struct Stretch {
-    int begin = -1;  ///< -1 until the bound before it was seen
-    bool has_white = false;
-  };
-  thread_local std::vector<Stretch> open;
-  const auto scan = [&](double wider, auto bounds) {
-    for (int r = 0; r < height; ++r) {
-      Stretch stretch;
-      for (int c = 0; c < width; ++c) {
-        const std::uint8_t p = map[static_cast<std::size_t>(r * width + c)];
-        if (bounds(p, c, r)) {
-          if (stretch.begin >= 0 && c > stretch.begin &&
-              c - stretch.begin <= wider * size.along_row((stretch.begin + c) / 2, r))
-            for (int i = stretch.begin; i < c; ++i) mark(i, r, stretch.has_white);
-          stretch = {c + 1, false};
-        } else if (p == colored) {
-          stretch = {};
-        } else if (p == white) {
-          stretch.has_white = true;
-        }
-      }
-    }
-    // All columns at once, row by row; below the image the carpet goes on.
-    open.assign(static_cast<std::size_t>(width), Stretch{});
-    for (int r = 0; r <= height; ++r)
-      for (int c = 0; c < width; ++c) {
-        const std::uint8_t p =
-            r < height ? map[static_cast<std::size_t>(r * width + c)] : static_cast<std::uint8_t>(carpet);
-        Stretch& stretch = open[static_cast<std::size_t>(c)];
-        if (r == height || bounds(p, c, r)) {
-          if (stretch.begin >= 0 && r > stretch.begin &&
-              r - stretch.begin <= wider * size.along_column(c, (stretch.begin + r) / 2))
-            for (int i = stretch.begin; i < r; ++i) mark(c, i, stretch.has_white);
-          stretch = {r + 1, false};
-        } else if (p == colored) {
-          stretch = {};
-        } else if (p == white) {
-          stretch.has_white = true;
-        }
-      }
-  };
-  scan(1, [](std::uint8_t p, int, int) { return p == carpet; });
-  // Where lines meet, white is wider than a line, but lines bound it.
-  scan(2, [&](std::uint8_t p, int c, int r) { return p == carpet || kind_at(c, r) == SurfaceKind::line; });
+  Judge judge(surface, size);
+  for (const Gap& gap : gaps)
+    if (!judge.has_object(gap) && !judge.accept(gap)) wide.push_back(gap);
+  for (const Gap& gap : wide) judge.accept_between_lines(gap);
   return surface;
 }
 

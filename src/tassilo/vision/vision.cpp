@@ -40,20 +40,23 @@ Vision::Vision(const VisionSetup& setup) : classifier_(setup.colors), field_(set
   sectors_ = std::make_unique<const SectorMap>(camera, options_.free_space);
 }
 
-Scene Vision::operator()(const Frame& frame, VisionWorkspace& workspace) const {
-  const std::string name = frame.image.empty() ? "frame " + std::to_string(frame.index) : frame.image;
+void Vision::check_frames(const std::string& name, int width, int height, ColorRange range) const {
   const ColorRange trained_for = classifier_.table().range;
-  if (frame.range != trained_for)
-    throw Error(name, "has " + std::string(to_string(frame.range)) + " color range, the color table is for " +
+  if (range != trained_for)
+    throw Error(name, "has " + std::string(to_string(range)) + " color range, the color table is for " +
                           std::string(to_string(trained_for)) +
                           " range; train the colors on images of this camera, or convert the video");
-  if (optics_) {
-    const CameraModel& camera = optics_->camera.model();
-    if (frame.view.width() != camera.width || frame.view.height() != camera.height)
-      throw Error(name, "is " + size_text(frame.view.width(), frame.view.height()) + ", the camera file is for " +
-                            size_text(camera.width, camera.height) +
-                            "; calibrate for this resolution, or leave `camera:` out of the robot file");
-  }
+  if (!optics_) return;
+  const CameraModel& camera = optics_->camera.model();
+  if (width != camera.width || height != camera.height)
+    throw Error(name, "is " + size_text(width, height) + ", the camera file is for " +
+                          size_text(camera.width, camera.height) +
+                          "; calibrate for this resolution, or leave `camera:` out of the robot file");
+}
+
+Scene Vision::operator()(const Frame& frame, VisionWorkspace& workspace) const {
+  check_frames(frame.image.empty() ? "frame " + std::to_string(frame.index) : frame.image, frame.view.width(),
+               frame.view.height(), frame.range);
 
   Scene scene;
   scene.frame = frame.index;
@@ -86,7 +89,7 @@ Scene Vision::operator()(const Frame& frame, VisionWorkspace& workspace) const {
     scene.lines = std::move(lines.lines);
     scene.circles = std::move(lines.circles);
     scene.free_space = timed(scene, "free_space",
-                             [&] { return find_free_space(*sectors_, segmentation, workspace.surface, scene.balls); });
+                             [&] { return find_free_space(*sectors_, workspace.surface, scene.balls); });
   }
   scene.timing.push_back({"total", ms_since(start)});
   return scene;

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "tassilo/camera/mount.h"
 #include "tassilo/color/color_table.h"
@@ -37,8 +38,11 @@ class Vision {
   explicit Vision(const VisionSetup& setup);
 
   /// Sees one frame. `timing` has a row for each stage and "total"; pose stays empty.
-  /// Throws Error when the frame's size is not the camera's, or its range is not the table's.
+  /// Throws Error when the frame is not what check_frames asks for.
   Scene operator()(const Frame& frame, VisionWorkspace& workspace) const;
+
+  /// Throws Error naming `name` when frames of this size are not the camera's, or their range is not the table's.
+  void check_frames(const std::string& name, int width, int height, ColorRange range) const;
 
   const Optics* optics() const { return optics_.get(); }
 

@@ -1,0 +1,122 @@
+// How long does a frame take from memory to scene, as a whole and by stage? On the shipped recordings, frames cycled.
+// The scalar reference (one table lookup a pixel pair, one mask a pixel) runs in the same process: compare ratios.
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tassilo/color/train.h"
+#include "tassilo/files/camera_file.h"
+#include "tassilo/files/field_file.h"
+#include "tassilo/files/robot_file.h"
+#include "tassilo/files/samples_file.h"
+#include "tassilo/region/raster.h"
+#include "tassilo/source/frame_source.h"
+#include "tassilo/vision/vision.h"
+
+namespace tassilo {
+namespace {
+
+const std::filesystem::path kData = TASSILO_SOURCE_DIR "/data/msl98";
+
+ColorTable trained(const std::string& samples_file) {
+  std::vector<ColorSample> samples;
+  ColorRange range = ColorRange::limited;
+  for (const TrainingSample& sample : read_samples(kData / samples_file)) {
+    SourceOptions options;
+    options.location = sample.image.string();
+    const Frame frame = read_frame(options, sample.frame);
+    range = frame.range;
+    Region region;
+    if (const auto* rectangle = std::get_if<PixelBox>(&sample.shape)) region = Region::from_box(*rectangle);
+    if (const auto* polygon = std::get_if<std::vector<PixelPoint>>(&sample.shape))
+      region = region_from_polygon(*polygon, {0, 0, frame.view.width(), frame.view.height()});
+    samples.push_back({sample.color, 0, pixels_of(frame.view, region)});
+  }
+  return train_colors(samples, range);
+}
+
+/// Frames in memory and everything that sees them.
+struct Recording {
+  Recording(const std::string& name, const std::string& samples) {
+    const RobotFile robot = read_robot(kData / name / "robot.yaml");
+    const CameraFile camera = read_camera(robot.camera.value());
+    setup.colors = trained(samples);
+    setup.field = read_field(robot.field.value());
+    setup.camera = camera.model;
+    setup.mount = camera.mount;
+    SourceOptions options;
+    options.location = (kData / name / "video.mkv").string();
+    FrameSource source = open_source(options);
+    while (auto frame = source.next()) frames.push_back(std::move(*frame));
+  }
+  VisionSetup setup;
+  std::vector<Frame> frames;
+};
+
+const Recording& recording(int index) {
+  static const std::array names{std::pair("d01_approach", "train_div/samples.yaml"),
+                                std::pair("d06_vga", "train_vga/samples.yaml")};
+  static std::map<int, Recording> loaded;
+  const auto& [name, samples] = names[static_cast<std::size_t>(index)];
+  return loaded.try_emplace(index, name, samples).first->second;
+}
+
+std::string size_label(const Frame& frame) {
+  return std::to_string(frame.view.width()) + "x" + std::to_string(frame.view.height());
+}
+
+void BM_ScalarReference(benchmark::State& state) {
+  const Recording& r = recording(static_cast<int>(state.range(0)));
+  const ColorTable& table = r.setup.colors;
+  std::array<ClassBits, 256> bright{};
+  for (int y = 0; y < 256; ++y)
+    for (const ColorClass color : kColorClasses)
+      if (table.brightness[static_cast<std::size_t>(class_index(color))].contains(y))
+        bright[static_cast<std::size_t>(y)] |= class_bit(color);
+  std::vector<ClassBits> out(static_cast<std::size_t>(r.frames[0].view.width() * r.frames[0].view.height()));
+  std::size_t next = 0;
+  for (auto _ : state) {
+    const FrameView& view = r.frames[next++ % r.frames.size()].view;
+    for (int row_index = 0; row_index < view.height(); ++row_index) {
+      const YuvRow row = view.row(row_index);
+      ClassBits* to = out.data() + static_cast<std::ptrdiff_t>(row_index) * view.width();
+      for (int c = 0; c + 1 < view.width(); c += 2) {
+        const ClassBits chroma = table.chroma[static_cast<std::size_t>(row.v[c / 2] * 256 + row.u[c / 2])];
+        to[c] = chroma & bright[row.y[c]];
+        to[c + 1] = chroma & bright[row.y[c + 1]];
+      }
+    }
+    benchmark::DoNotOptimize(out.data());
+    benchmark::ClobberMemory();
+  }
+  state.SetLabel(size_label(r.frames[0]));
+}
+
+void BM_FrameToScene(benchmark::State& state) {
+  const Recording& r = recording(static_cast<int>(state.range(0)));
+  const Vision vision(r.setup);
+  VisionWorkspace workspace;
+  std::map<std::string, std::vector<double>> stages;
+  std::size_t next = 0;
+  for (auto _ : state) {
+    const Scene scene = vision(r.frames[next++ % r.frames.size()], workspace);
+    for (const StageTime& time : scene.timing) stages[time.stage].push_back(time.ms);
+  }
+  for (auto& [stage, ms] : stages) {
+    std::ranges::sort(ms);
+    state.counters[stage + "_ms"] = ms[ms.size() / 2];
+  }
+  state.SetLabel(size_label(r.frames[0]));
+}
+
+BENCHMARK(BM_ScalarReference)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_FrameToScene)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace tassilo
