@@ -1,7 +1,12 @@
 #include "tassilo/files/atomic_file.h"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
 
 #include "tassilo/base/error.h"
 #include "tassilo/files/internal/test_folder.h"
@@ -36,6 +41,26 @@ TEST(WriteAtomically, KeepsPermissionsAndLinks) {
   EXPECT_TRUE(fs::is_symlink(folder / "link"));
   EXPECT_EQ(read_text(file, 100), "new");
   EXPECT_EQ(fs::status(file).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
+TEST(WriteAtomically, WritesIntoWhatIsNoFile) {
+  const TestFolder folder;
+  const auto pipe = folder / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+  ASSERT_GE(reader, 0);
+  fs::create_symlink("pipe", folder / "link");
+  for (const char* name : {"pipe", "link"}) {
+    SCOPED_TRACE(name);
+    write_atomically(folder / name, "bytes");
+    std::array<char, 16> got{};
+    EXPECT_EQ(read(reader, got.data(), got.size()), 5);
+    EXPECT_STREQ(got.data(), "bytes");
+  }
+  close(reader);
+  EXPECT_TRUE(fs::is_fifo(pipe));
+  EXPECT_TRUE(fs::is_symlink(folder / "link"));
+  EXPECT_EQ(file_count(folder.path()), 2u);
 }
 
 TEST(WriteAtomically, LeavesTheOldContentWhenItFails) {
