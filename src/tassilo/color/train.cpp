@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <sstream>
 #include <string>
 
 #include "tassilo/base/error.h"
@@ -152,9 +153,10 @@ std::vector<YuvPixel> pixels_of(const FrameView& frame, const Region& region) {
 
 void TrainingOptions::check() const {
   const auto in = [](const char* name, double value, double low, double high) {
-    if (!(value >= low && value <= high))
-      throw Error(std::string("train.") + name, "is " + std::to_string(value) + ", must be in [" + std::to_string(low) +
-                                                    ", " + std::to_string(high) + "]");
+    if (value >= low && value <= high) return;
+    std::ostringstream reason;
+    reason << "is " << value << ", must be in [" << low << ", " << high << "]";
+    throw Error(std::string("train.") + name, reason.str());
   };
   in("outlier_share", outlier_share, 0, 0.2);
   in("min_cluster_share", min_cluster_share, 0, 0.5);
