@@ -1,10 +1,12 @@
 #include <fmt/core.h>
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "tassilo/app/commands.h"
+#include "tassilo/app/written_files.h"
 #include "tassilo/base/error.h"
 #include "tassilo/evaluate/evaluate.h"
 #include "tassilo/files/atomic_file.h"
@@ -17,6 +19,16 @@ struct EvalArguments {
   std::string meta, exclude_samples, json;
   std::vector<std::string> exclude;
 };
+
+/// Throws Error when the figures would take the place of what they are made from.
+void check_json_path(const EvalArguments& arguments) {
+  std::vector<NamedFile> read;
+  for (const auto* list : {&arguments.pairs, &arguments.balls, &arguments.poses})
+    for (const std::string& path : *list) read.push_back({"truth or scenes", path});
+  read.push_back({"--meta", arguments.meta});
+  read.push_back({"--exclude-samples", arguments.exclude_samples});
+  check_written_files(read, std::array<NamedFile, 1>{{{"--json", arguments.json}}});
+}
 
 int eval_command(const EvalArguments& arguments) {
   EvaluateOptions options;
@@ -33,9 +45,14 @@ int eval_command(const EvalArguments& arguments) {
     if (!arguments.exclude_samples.empty()) options.balls->exclude_samples = arguments.exclude_samples;
   }
   if (!arguments.poses.empty()) options.poses = {arguments.poses[0], arguments.poses[1]};
+  check_json_path(arguments);
   const Evaluation evaluation = evaluate(options);
-  fmt::print("{}", table(evaluation));
-  if (!arguments.json.empty()) write_atomically(arguments.json, to_json(evaluation));
+  // Nothing but JSON may go where JSON goes.
+  fmt::print(arguments.json == "-" ? stderr : stdout, "{}", table(evaluation));
+  if (arguments.json == "-")
+    fmt::print("{}", to_json(evaluation));
+  else if (!arguments.json.empty())
+    write_atomically(arguments.json, to_json(evaluation));
   return 0;
 }
 
@@ -59,7 +76,7 @@ Command add_eval(CLI::App& program) {
                    "with --balls: leave out the images of samples.yaml")
       ->needs(balls);
   command->add_option("--poses", arguments->poses, "POSES.csv SCENES: poses in single images")->expected(2);
-  command->add_option("--json", arguments->json, "write all figures there");
+  command->add_option("--json", arguments->json, "write all figures there; - for standard output");
   command->callback([arguments] {
     if (arguments->pairs.size() % 2 != 0)
       throw CLI::ValidationError("pairs", "give pairs: each TRUTH needs its SCENES");

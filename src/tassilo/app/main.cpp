@@ -1,18 +1,51 @@
-#include <fmt/core.h>
+#include <fcntl.h>
 
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <exception>
+#include <string>
+#include <system_error>
 
 #include "tassilo/app/commands.h"
+#include "tassilo/app/usage.h"
 #include "tassilo/base/error.h"
+
+namespace tassilo {
+namespace {
+
+/// A standard stream that is closed would be the next file to be opened: messages would go into a recording. Its number
+/// is taken by something that fails to be used.
+void occupy_closed_streams() {
+  for (int stream = 0; stream <= 2; ++stream)
+    if (fcntl(stream, F_GETFD) < 0 && errno == EBADF) open("/dev/null", stream == 0 ? O_WRONLY : O_RDONLY);
+}
+
+/// What was printed is not told before it is out: on a full disk it never is.
+void flush_standard_output() {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return;
+  throw Error("standard output", std::string("cannot be written: ") + std::strerror(errno));
+}
+
+/// Returns the exit code of a failure. A closed or full standard error is no further one.
+int failure(const std::string& message) {
+  std::fputs(("tassilo: " + message + "\n").c_str(), stderr);
+  return 1;
+}
+
+}  // namespace
+}  // namespace tassilo
 
 /// Exit codes: 0 done, 1 the world failed (a file, a stream), 2 wrong usage.
 int main(int argc, char** argv) {
   using namespace tassilo;
+  occupy_closed_streams();
   CLI::App program{
       "Tassilo: color vision for robots, from camera frame to ball, goals, robots, lines and free motion space",
       "tassilo"};
   program.require_subcommand(1);
   program.set_version_flag("--version", TASSILO_VERSION);
+  program.failure_message(usage_message);
 
   const Command run = add_run(program);
   auto* train = program.add_subcommand("train", "train what the vision needs");
@@ -20,6 +53,12 @@ int main(int argc, char** argv) {
   const Command train_colors = add_train_colors(*train);
   const Command eval = add_eval(program);
   const Command info = add_info(program);
+  const auto command = [&] {
+    if (program.got_subcommand("run")) return run();
+    if (program.got_subcommand("train")) return train_colors();
+    if (program.got_subcommand("eval")) return eval();
+    return info();
+  };
 
   try {
     program.parse(argc, argv);
@@ -28,14 +67,14 @@ int main(int argc, char** argv) {
     return code == 0 ? 0 : 2;
   }
   try {
-    if (program.got_subcommand("run")) return run();
-    if (program.got_subcommand("train")) return train_colors();
-    if (program.got_subcommand("eval")) return eval();
-    return info();
+    const int code = command();
+    flush_standard_output();
+    return code;
   } catch (const Error& error) {
-    fmt::print(stderr, "tassilo: {}\n", error.what());
+    return failure(error.what());
+  } catch (const std::system_error& error) {  // what the system refused, and no reader foresaw
+    return failure(error.what());
   } catch (const std::exception& error) {
-    fmt::print(stderr, "tassilo: unexpected: {}\n", error.what());
+    return failure(std::string("unexpected: ") + error.what());
   }
-  return 1;
 }

@@ -2,21 +2,21 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "tassilo/app/commands.h"
+#include "tassilo/app/robot_setup.h"
 #include "tassilo/app/run_summary.h"
+#include "tassilo/app/written_files.h"
 #include "tassilo/base/error.h"
-#include "tassilo/files/camera_file.h"
-#include "tassilo/files/colors_file.h"
-#include "tassilo/files/field_file.h"
 #include "tassilo/files/odometry_file.h"
-#include "tassilo/files/robot_file.h"
 #include "tassilo/files/scene_json.h"
 #include "tassilo/overlay/overlay.h"
 #include "tassilo/record/image_folder.h"
@@ -31,6 +31,7 @@ namespace {
 struct RunArguments {
   std::string robot, source, odometry, output, overlay, label_maps, colors;
   std::string format, size, range;
+  std::optional<RawFormat> raw;  ///< What `format`, `size`, `range` and `fps` say.
   double fps = 0;
   int threads = 1;
   bool quiet = false;
@@ -49,15 +50,16 @@ void end_cleanly_on_signals() {
   sigaction(SIGTERM, &action, nullptr);
 }
 
+/// Throws CLI::ValidationError: what it refuses is wrong usage.
 std::optional<RawFormat> raw_format(const RunArguments& arguments) {
   if (arguments.format.empty()) {
     if (!arguments.size.empty() || !arguments.range.empty())
-      throw Error("--size and --range", "belong to raw frames, --format is missing");
+      throw CLI::ValidationError("--size and --range", "belong to raw frames, --format is missing");
     return std::nullopt;
   }
   if (arguments.size.empty() || arguments.range.empty() || arguments.fps <= 0)
-    throw Error("--format",
-                "raw frames do not say what they are: give --size WxH, --range full|limited and --fps N, too");
+    throw CLI::ValidationError(
+        "--format", "raw frames do not say what they are: give --size WxH, --range full|limited and --fps N, too");
   RawFormat raw;
   for (const PixelFormat format :
        {PixelFormat::yuyv422, PixelFormat::uyvy422, PixelFormat::yuv422p, PixelFormat::yuv420p, PixelFormat::nv12})
@@ -70,44 +72,43 @@ std::optional<RawFormat> raw_format(const RunArguments& arguments) {
     raw.height = std::stoi(height, &used_height);
     if (used_width != cross || used_height != height.size()) throw std::invalid_argument("size");
   } catch (const std::logic_error&) {
-    throw Error("--size", "is " + arguments.size + ", must be like 640x480");
+    throw CLI::ValidationError("--size", "is " + arguments.size + ", must be like 640x480");
   }
   raw.range = arguments.range == "full" ? ColorRange::full : ColorRange::limited;
   raw.fps = arguments.fps;
-  raw.check();
+  try {
+    raw.check();
+  } catch (const Error& error) {
+    throw CLI::ValidationError("--size", error.what());
+  }
   return raw;
 }
 
-/// All files that the robot file names, and what the command line says instead.
-VisionSetup load_setup(const RunArguments& arguments) {
-  const RobotFile robot = arguments.robot.empty() ? RobotFile{} : read_robot(arguments.robot);
-  VisionSetup setup;
-  if (!arguments.colors.empty())
-    setup.colors = read_colors(arguments.colors).table;
-  else if (robot.colors)
-    setup.colors = read_colors(*robot.colors).table;
-  else
-    throw Error(arguments.robot.empty() ? "colors" : arguments.robot,
-                "no color table: give --colors FILE, or `colors:` in the robot file; `tassilo train colors` makes one");
-  if (robot.camera) {
-    const CameraFile camera = read_camera(*robot.camera);
-    if (!camera.mount)
-      throw Error(robot.camera->string(),
-                  "has no camera_pose_in_robot; without a mount leave `camera:` out of the robot file");
-    setup.camera = camera.model;
-    setup.mount = camera.mount;
+/// Throws Error when a file that is read would be overwritten.
+void check_paths(const RunArguments& arguments, std::vector<NamedFile> read) {
+  const std::filesystem::path source = arguments.source;
+  read.push_back({"--source", arguments.source});
+  read.push_back({"--odometry", arguments.odometry});
+  // Pictures are written as NNNN.png: among other pictures one may have this name.
+  const std::string extension = source.extension().string();
+  if (extension == ".png" || extension == ".jpg" || extension == ".jpeg")
+    read.push_back({"folder of --source", source.has_parent_path() ? source.parent_path().string() : "."});
+  check_written_files(read, std::array<NamedFile, 3>{{{"--output", arguments.output},
+                                                      {"--overlay", arguments.overlay},
+                                                      {"--label-maps", arguments.label_maps}}});
+}
+
+/// Bytes without a header open as no video; says what they may be.
+FrameSource open_source_of(const RunArguments& arguments, const SourceOptions& options) {
+  try {
+    return open_source(options);
+  } catch (const Error& error) {
+    const std::string extension = std::filesystem::path(arguments.source).extension().string();
+    const bool may_be_raw =
+        arguments.source == "-" || extension == ".yuv" || extension == ".raw" || extension == ".nv12";
+    if (options.raw || !may_be_raw || interrupted) throw;
+    throw Error(error.what(), "raw frames need --format, --size, --range and --fps");
   }
-  if (robot.field) {
-    setup.field = read_field(*robot.field);
-  } else {
-    // Without a field file: whatever may be there, in the image alone.
-    setup.field = read_field("msl98");
-    if (setup.camera)
-      throw Error(arguments.robot,
-                  "has a camera but no `field:`; sizes of ball, goals and lines are needed on the floor");
-  }
-  setup.options = vision_options(robot.vision);
-  return setup;
 }
 
 /// "frame 12 of 40  35.2 frames/s", rewritten in place on a terminal.
@@ -130,9 +131,14 @@ class Progress {
     }
     fmt::print(stderr, "{}  {:.1f} frames/s   ", text, rate);
   }
+  /// Gives the line back to other messages.
   void finish() {
-    if (shown_) fmt::print(stderr, "\r{:78}\r", "");
+    if (shown_) std::fprintf(stderr, "\r%78s\r", "");
+    shown_ = false;
   }
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  ~Progress() { finish(); }
 
  private:
   bool shown_;
@@ -140,89 +146,134 @@ class Progress {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now(), next_ = start_;
 };
 
+/// Where scenes, pictures and label maps go; any of them may not be wanted.
+class Sinks {
+ public:
+  explicit Sinks(const RunArguments& arguments) : arguments_(arguments) {
+    if (!arguments.overlay.empty()) overlay_.emplace(arguments.overlay, VideoOptions{.threads = arguments.threads});
+    if (!arguments.label_maps.empty()) label_maps_.emplace(arguments.label_maps);
+    // Last, when nothing else is wrong: it replaces the scenes of another run.
+    if (!arguments.output.empty()) output_.emplace(arguments.output);
+  }
+
+  void write(const Frame& frame, const Scene& scene, const Segmentation& segmentation, const Optics* optics) {
+    if (output_) output_->write(to_json_line(scene));
+    if (label_maps_)
+      label_maps_->write(GrayImage{segmentation.width, segmentation.height, segmentation.labels}, scene.frame);
+    if (overlay_) {
+      OverlayOptions options;
+      options.camera = optics != nullptr ? &optics->camera : nullptr;
+      overlay_->write(draw_overlay(frame.view, frame.range, scene, options), scene.frame, scene.t);
+    }
+  }
+
+  /// Completes the video. After an error the destructor does what can be done.
+  void finish() {
+    if (overlay_) overlay_->finish();
+  }
+
+  /// For people, a line each; empty for scenes on standard output.
+  std::string names() const {
+    std::string text;
+    if (output_ && arguments_.output != "-") text += fmt::format("scenes: {}\n", arguments_.output);
+    if (overlay_) text += fmt::format("annotated picture: {}\n", arguments_.overlay);
+    if (label_maps_) text += fmt::format("label maps: {}\n", arguments_.label_maps);
+    return text.empty() ? text : "\n" + text;
+  }
+
+ private:
+  const RunArguments& arguments_;
+  std::optional<PictureWriter> overlay_;
+  std::optional<ImageFolder> label_maps_;
+  std::optional<JsonLinesWriter> output_;
+};
+
+/// As messages name a frame: the image's file, or its number in the source.
+std::string name_of(const Frame& frame, const std::string& source) {
+  if (frame.image.empty()) return source + ": frame " + std::to_string(frame.index);
+  const std::filesystem::path path = source;
+  return path.filename() == frame.image ? source : (path / frame.image).string();
+}
+
 double ms_between(std::chrono::steady_clock::time_point from, std::chrono::steady_clock::time_point to) {
   return std::chrono::duration<double, std::milli>(to - from).count();
 }
 
+std::optional<Odometry> load_odometry(const std::string& file) {
+  if (file.empty()) return std::nullopt;
+  const std::vector<OdometrySample> samples = read_odometry(file);
+  Odometry odometry(std::max<std::size_t>(2, samples.size()));
+  for (const OdometrySample& sample : samples) odometry.add(sample);
+  return odometry;
+}
+
 int run_command(const RunArguments& arguments) {
   using Clock = std::chrono::steady_clock;
-  const VisionSetup setup = load_setup(arguments);
-  const Vision vision(setup);
-  Odometry odometry;
-  bool has_odometry = false;
-  if (!arguments.odometry.empty()) {
-    const std::vector<OdometrySample> samples = read_odometry(arguments.odometry);
-    odometry = Odometry(std::max<std::size_t>(2, samples.size()));
-    for (const OdometrySample& sample : samples) odometry.add(sample);
-    has_odometry = true;
-  }
+  const RobotSetup setup = read_robot_setup(arguments.robot, arguments.colors);
+  check_paths(arguments, setup.read);
+  const Vision vision(setup.vision);
+  const std::optional<Odometry> odometry = load_odometry(arguments.odometry);
+  // Nothing but scene lines may go where scene lines go.
+  std::FILE* report = arguments.output == "-" ? stderr : stdout;
+  const auto tell = [&](const std::string& text) {
+    if (!arguments.quiet) fmt::print(report, "{}", text);
+  };
 
   SourceOptions source_options;
   source_options.location = arguments.source;
-  source_options.raw = raw_format(arguments);
-  source_options.images_range = setup.colors.range;
+  source_options.raw = arguments.raw;
+  source_options.images_range = setup.vision.colors.range;
   source_options.fps = arguments.fps;
   source_options.threads = arguments.threads;
   source_options.interrupted = [] { return interrupted.load(); };
   end_cleanly_on_signals();
-  FrameSource source = open_source(source_options);
+  std::optional<FrameSource> opened;
+  try {
+    opened = open_source_of(arguments, source_options);
+  } catch (const Error&) {
+    if (!interrupted) throw;
+    tell("ended by a signal before the first frame\n");
+    return 0;
+  }
+  FrameSource& source = *opened;
+  const std::string name = source.info().name;
+  vision.check_frames(name, source.info().width, source.info().height, source.info().range);
+  tell(fmt::format("{}: {}\n", name, source.info().description));
 
-  std::optional<JsonLinesWriter> output;
-  if (!arguments.output.empty()) output.emplace(arguments.output);
-  std::optional<PictureWriter> overlay;
-  if (!arguments.overlay.empty()) overlay.emplace(arguments.overlay, VideoOptions{.threads = arguments.threads});
-  std::optional<ImageFolder> label_maps;
-  if (!arguments.label_maps.empty()) label_maps.emplace(arguments.label_maps);
-  // Nothing but scene lines may go where scene lines go.
-  std::FILE* report = arguments.output == "-" ? stderr : stdout;
-  if (!arguments.quiet) fmt::print(report, "{}: {}\n", source.info().name, source.info().description);
-
+  Sinks sinks(arguments);
   VisionWorkspace workspace;
   RunSummary summary;
   Progress progress(!arguments.quiet, source.info().frame_count);
   std::optional<Error> damage;
   std::int64_t done = 0;
   const auto begin = Clock::now();
-  while (!interrupted) {
-    const auto before = Clock::now();
-    std::optional<Frame> frame;
-    try {
-      frame = source.next();
-    } catch (const Error& error) {
-      damage = error;  // what came before it is kept
+  try {
+    while (!interrupted) {
+      const auto before = Clock::now();
+      const std::optional<Frame> frame = source.next();
+      if (!frame) break;
+      const double decode_ms = ms_between(before, Clock::now());
+      vision.check_frames(name_of(*frame, name), frame->view.width(), frame->view.height(), frame->range);
+      Scene scene = vision(*frame, workspace);
+      scene.timing.insert(scene.timing.begin(), {"decode", decode_ms});
+      if (odometry) {
+        const bool known = odometry->at(frame->t).has_value();
+        summary.add_odometry(known);
+        if (!known) scene.why.emplace_back("odometry", "missing at this time");
+      }
+      sinks.write(*frame, scene, workspace.segmentation, vision.optics());
+      summary.add(scene);
+      progress.frame(++done);
     }
-    if (!frame) break;
-    const double decode_ms = ms_between(before, Clock::now());
-    Scene scene = vision(*frame, workspace);
-    scene.timing.insert(scene.timing.begin(), {"decode", decode_ms});
-    if (has_odometry) {
-      const bool known = odometry.at(frame->t).has_value();
-      summary.add_odometry(known);
-      if (!known) scene.why.emplace_back("odometry", "missing at this time");
-    }
-    if (output) output->write(to_json_line(scene));
-    if (label_maps)
-      label_maps->write(
-          GrayImage{workspace.segmentation.width, workspace.segmentation.height, workspace.segmentation.labels},
-          scene.frame);
-    if (overlay) {
-      OverlayOptions options;
-      options.camera = vision.optics() != nullptr ? &vision.optics()->camera : nullptr;
-      overlay->write(draw_overlay(frame->view, frame->range, scene, options), scene.frame, scene.t);
-    }
-    summary.add(scene);
-    progress.frame(++done);
+    sinks.finish();
+  } catch (const Error& error) {
+    damage = error;
   }
   const double seconds = ms_between(begin, Clock::now()) / 1000;
-  if (overlay) overlay->finish();
   progress.finish();
-  if (!arguments.quiet) {
-    fmt::print(report, "{}", summary.text(seconds));
-    if (interrupted) fmt::print(report, "\nended by a signal; all lines are complete\n");
-    if (output && arguments.output != "-") fmt::print(report, "\nscenes: {}\n", arguments.output);
-    if (overlay) fmt::print(report, "annotated picture: {}\n", arguments.overlay);
-    if (label_maps) fmt::print(report, "label maps: {}\n", arguments.label_maps);
-  }
+  tell(summary.text(seconds));
+  if (interrupted) tell("\nended by a signal; all lines are complete\n");
+  tell(sinks.names());
   if (damage) throw *damage;
   return 0;
 }
@@ -254,6 +305,7 @@ Command add_run(CLI::App& program) {
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
   command->add_flag("-q,--quiet", arguments->quiet, "print nothing but errors");
+  command->callback([arguments] { arguments->raw = raw_format(*arguments); });
   return [arguments] { return run_command(*arguments); };
 }
 

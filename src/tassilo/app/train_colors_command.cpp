@@ -1,8 +1,9 @@
 #include <fmt/core.h>
-#include <fmt/ostream.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <cstdio>
 #include <ctime>
 #include <filesystem>
 #include <map>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "tassilo/app/commands.h"
+#include "tassilo/app/written_files.h"
 #include "tassilo/base/error.h"
 #include "tassilo/color/quality.h"
 #include "tassilo/color/train.h"
@@ -38,11 +40,23 @@ struct TrainArguments {
 /// Samples read, with the range of their images.
 struct LoadedSamples {
   std::vector<ColorSample> samples;
+  int images = 0;                   ///< That have samples; a frame of a video is an image.
+  std::vector<NamedFile> files;     ///< All that were read, the list of samples among them.
   std::optional<ColorRange> range;  ///< Nothing when there is no sample.
 };
 
 void warn(const std::string& what, const std::string& reason) {
-  fmt::print(stderr, "tassilo: warning: {}: {}\n", what, reason);
+  std::fputs(fmt::format("tassilo: warning: {}: {}\n", what, reason).c_str(), stderr);
+}
+
+/// Does `read`; what fails is told with the place in the samples file that asked for it.
+template <class Read>
+auto read_at(const std::string& place, Read read) {
+  try {
+    return read();
+  } catch (const Error& error) {
+    throw Error(place, error.what());
+  }
 }
 
 Region region_of(const TrainingSample& sample, const FrameView& frame, const std::string& place) {
@@ -50,7 +64,7 @@ Region region_of(const TrainingSample& sample, const FrameView& frame, const std
   if (const auto* polygon = std::get_if<std::vector<PixelPoint>>(&sample.shape))
     return region_from_polygon(*polygon, {-frame.width(), -frame.height(), 2 * frame.width(), 2 * frame.height()});
   const auto& mask = std::get<SampleMask>(sample.shape);
-  const GrayImage pixels = read_png_gray(mask.path);
+  const GrayImage pixels = read_at(place, [&] { return read_png_gray(mask.path); });
   if (pixels.width != frame.width() || pixels.height != frame.height())
     throw Error(place, fmt::format("mask {} is {}x{}, its image is {}x{}", mask.path.string(), pixels.width,
                                    pixels.height, frame.width(), frame.height()));
@@ -74,25 +88,42 @@ void warn_of_overlap(const std::vector<std::pair<const TrainingSample*, Region>>
     }
 }
 
+/// The frames of one image or video that samples ask for, and the first line that does.
+struct WantedFrames {
+  std::set<std::int64_t> indices;
+  int line = 0;
+};
+
 LoadedSamples load_samples(const std::string& file, ColorRange images_range) {
   const std::vector<TrainingSample> list = read_samples(file);
-  std::map<fs::path, std::set<std::int64_t>> wanted;
-  for (const TrainingSample& sample : list) wanted[sample.image].insert(sample.frame);
+  if (list.empty()) throw Error(file, "holds no samples, must hold at least one");
+  std::map<fs::path, WantedFrames> wanted;
+  for (const TrainingSample& sample : list) {
+    WantedFrames& frames = wanted.try_emplace(sample.image, WantedFrames{{}, sample.line}).first->second;
+    frames.indices.insert(sample.frame);
+  }
 
   LoadedSamples loaded;
+  loaded.files.push_back({"samples", file});
+  for (const TrainingSample& sample : list) {
+    loaded.files.push_back({"an image", sample.image.string()});
+    if (const auto* mask = std::get_if<SampleMask>(&sample.shape))
+      loaded.files.push_back({"a mask", mask->path.string()});
+  }
   int group = 0;
   for (const auto& [image, frames] : wanted) {
-    const std::vector<std::int64_t> indices(frames.begin(), frames.end());
+    const std::vector<std::int64_t> indices(frames.indices.begin(), frames.indices.end());
+    const std::string first_place = fmt::format("{}:{}", file, frames.line);
     SourceOptions options;
     options.location = image.string();
     options.images_range = images_range;
-    const std::vector<Frame> pictures = read_frames(options, indices);
+    const std::vector<Frame> pictures = read_at(first_place, [&] { return read_frames(options, indices); });
     for (std::size_t i = 0; i < pictures.size(); ++i, ++group) {
       const Frame& frame = pictures[i];
       if (loaded.range && *loaded.range != frame.range)
-        throw Error(image.string(),
-                    fmt::format("has {} color range, images before it have {}; a table is for one range",
-                                to_string(frame.range), to_string(*loaded.range)));
+        throw Error(first_place,
+                    fmt::format("{} has {} color range, images before it have {}; a table is for one range",
+                                image.string(), to_string(frame.range), to_string(*loaded.range)));
       loaded.range = frame.range;
       std::vector<std::pair<const TrainingSample*, Region>> drawn;
       for (const TrainingSample& sample : list) {
@@ -112,6 +143,7 @@ LoadedSamples load_samples(const std::string& file, ColorRange images_range) {
         loaded.samples.push_back({sample.color, group, std::move(pixels)});
         drawn.emplace_back(&sample, std::move(region));
       }
+      loaded.images += !drawn.empty();
       warn_of_overlap(drawn, file);
     }
   }
@@ -164,7 +196,13 @@ std::string today() {
 int train_colors_command(const TrainArguments& arguments) {
   const ColorRange images_range = arguments.range == "full" ? ColorRange::full : ColorRange::limited;
   const LoadedSamples loaded = load_samples(arguments.samples, images_range);
+  check_written_files(loaded.files,
+                      std::array<NamedFile, 2>{
+                          {{"--output", arguments.output},
+                           {"the PNG of --output", fs::path(arguments.output).replace_extension(".png").string()}}});
   if (loaded.samples.empty()) throw Error(arguments.samples, "has no sample with a pixel in its image");
+  if (std::ranges::all_of(loaded.samples, [](const ColorSample& s) { return s.color == ColorClass::no_color; }))
+    throw Error(arguments.samples, "has samples of no_color alone, must have some of a color");
 
   ColorsFile file;
   file.table = train_colors(loaded.samples, *loaded.range, arguments.options);
@@ -186,7 +224,9 @@ int train_colors_command(const TrainArguments& arguments) {
     how = "on " + arguments.held_out;
   } else {
     quality = cross_validate(loaded.samples, *loaded.range, arguments.options);
-    how = "cross-validated: on images held out in turn";
+    how = loaded.images > 1           ? "cross-validated: on images held out in turn"
+          : loaded.samples.size() > 1 ? "cross-validated: on samples of one image held out in turn"
+                                      : "not measured: needs a second sample of each color, better in another image";
   }
   file.trained_from = Provenance{};
   file.trained_from->samples = arguments.samples;
@@ -233,6 +273,13 @@ Command add_train_colors(CLI::App& train) {
   command->add_option("--black-reach", options.black_reach, "share of the gray between black and white that is black")
       ->capture_default_str();
   command->add_flag("-q,--quiet", arguments->quiet, "print nothing but warnings and errors");
+  command->callback([arguments] {
+    try {
+      arguments->options.check();
+    } catch (const Error& error) {
+      throw CLI::ValidationError(error.what());
+    }
+  });
   return [arguments] { return train_colors_command(*arguments); };
 }
 

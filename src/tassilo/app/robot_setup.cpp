@@ -1,0 +1,70 @@
+#include "tassilo/app/robot_setup.h"
+
+#include <filesystem>
+
+#include "tassilo/base/error.h"
+#include "tassilo/files/camera_file.h"
+#include "tassilo/files/colors_file.h"
+#include "tassilo/files/field_file.h"
+#include "tassilo/files/robot_file.h"
+
+namespace tassilo {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The path of a file that the robot file names below `key`.
+std::string named_file(const std::string& robot_file, const std::string& key, const fs::path& path,
+                       const std::string& remedy) {
+  std::error_code ignored;
+  if (!fs::exists(path, ignored))
+    throw Error(robot_file, "names " + path.string() + " as " + key + ", which does not exist" + remedy);
+  return path.string();
+}
+
+FieldModel named_field(const std::string& robot_file, const std::string& field) {
+  if (is_field_path(field)) return read_field(named_file(robot_file, "field", field, ""));
+  try {
+    return read_field(field);
+  } catch (const Error& error) {
+    throw Error(robot_file, error.what());
+  }
+}
+
+}  // namespace
+
+RobotSetup read_robot_setup(const std::string& robot_file, const std::string& colors) {
+  const RobotFile robot = robot_file.empty() ? RobotFile{} : read_robot(robot_file);
+  RobotSetup setup;
+  setup.read.push_back({"robot file", robot_file});
+
+  if (colors.empty() && !robot.colors)
+    throw Error(robot_file.empty() ? "colors" : robot_file,
+                "no color table: give --colors FILE, or `colors:` in the robot file; `tassilo train colors` makes one");
+  const std::string table = !colors.empty()
+                                ? colors
+                                : named_file(robot_file, "colors", *robot.colors,
+                                             "; `tassilo train colors` makes one, --colors FILE takes another");
+  setup.read.push_back({"color table", table});
+  setup.read.push_back({"color table", fs::path(table).replace_extension(".png").string()});
+  setup.vision.colors = read_colors(table).table;
+
+  if (robot.camera) {
+    const std::string file = named_file(robot_file, "camera", *robot.camera, "");
+    const CameraFile camera = read_camera(file);
+    if (!camera.mount)
+      throw Error(file, "has no camera_pose_in_robot; without a mount leave `camera:` out of the robot file");
+    if (!robot.field)
+      throw Error(robot_file, "has a camera but no `field:`; sizes of ball, goals and lines are needed on the floor");
+    setup.vision.camera = camera.model;
+    setup.vision.mount = camera.mount;
+    setup.read.push_back({"camera file", file});
+  }
+  // Without a field file: whatever may be there, in the image alone.
+  setup.vision.field = robot.field ? named_field(robot_file, *robot.field) : read_field("msl98");
+  if (robot.field && is_field_path(*robot.field)) setup.read.push_back({"field file", *robot.field});
+  setup.vision.options = vision_options(robot.vision);
+  return setup;
+}
+
+}  // namespace tassilo

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tassilo/app/written_files.h"
+#include "tassilo/vision/vision.h"
+
+namespace tassilo {
+
+/// What a robot sees with, and the files that said so.
+struct RobotSetup {
+  VisionSetup vision;
+  std::vector<NamedFile> read;
+};
+
+/// Reads a robot file (none when empty) and all that it names; `colors`, when given, takes the place of its color
+/// table. Throws Error naming the file that is wrong, and the robot file where it names something that is not there.
+RobotSetup read_robot_setup(const std::string& robot_file, const std::string& colors);
+
+}  // namespace tassilo
