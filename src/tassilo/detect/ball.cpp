@@ -195,7 +195,7 @@ std::optional<DistanceBounds> tangent_bounds(const View& view, const MountedCame
 /// robot's colors begin.
 struct Attempt {
   const MountedCamera& camera;
-  double nod_sigma = 0;      ///< Of the camera's pitch, beyond what the mount's calibration leaves. [rad]
+  double nod_sigma = 0;  ///< Of the camera's pitch, beyond what the mount's calibration leaves. [rad]
   bool with_hidden = false;
 };
 
@@ -263,8 +263,7 @@ std::optional<Ball> try_ball(const View& view, const Attempt& attempt, const Reg
   const double roundness = std::exp(-fit->rms_px * fit->rms_px / (0.08 * disc->radius_px * disc->radius_px + 0.5));
   // Nodding excuses much: half of the trust.
   const double steady = attempt.nod_sigma > 0 ? 0.5 : 1;
-  ball.confidence =
-      std::clamp(steady * cover * roundness * (0.5 + 0.5 * foot_share) * (0.4 + 0.6 * seen), 0.0, 1.0);
+  ball.confidence = std::clamp(steady * cover * roundness * (0.5 + 0.5 * foot_share) * (0.4 + 0.6 * seen), 0.0, 1.0);
 
   BallOnFloor floor;
   floor.position.mean = fit->sphere.foot;

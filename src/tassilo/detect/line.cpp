@@ -261,10 +261,16 @@ bool is_supported(const View& view, const std::vector<LinePoint>& points, FloorP
     if (!pixel) continue;
     const int c = static_cast<int>(std::lround(pixel->x)), r = static_cast<int>(std::lround(pixel->y));
     if (!view.inside(c, r)) continue;
-    if (seen[static_cast<std::size_t>(k)])
+    if (seen[static_cast<std::size_t>(k)]) {
       ++supported;
-    else if (view.surface.is_floor(c, r))
-      ++missing;  // a robot, the ball or a wall would excuse it
+      continue;
+    }
+    // A robot, the ball or a wall excuses a missing piece, and so does a line too thin to be seen.
+    constexpr double thinnest_px = 2;
+    const auto point = line_point(view, *pixel);
+    const Eigen::RowVector2d outward(std::cos(angle), std::sin(angle));
+    missing +=
+        view.surface.is_floor(c, r) && point && view.field.line_width > thinnest_px * (outward * point->per_px).norm();
   }
   return supported * (2 * std::numbers::pi / bins) >= options.min_arc && missing <= supported / 2;
 }

@@ -128,8 +128,7 @@ SectorMap::SectorMap(const MountedCamera& camera, const FreeSpaceOptions& option
   if (rays_.empty()) angle_min_ = 0;
 }
 
-FreeSpace find_free_space(const SectorMap& map, const Surface& surface,
-                          std::span<const Ball> balls) {
+FreeSpace find_free_space(const SectorMap& map, const Surface& surface, std::span<const Ball> balls) {
   FreeSpace space;
   space.origin = map.origin();
   space.angle_min = map.angle_min();

@@ -29,7 +29,7 @@ class SectorMap {
     float range;
   };
   struct Ray {
-    std::vector<Step> steps;   ///< Empty where no floor of this direction is in view.
+    std::vector<Step> steps;  ///< Empty where no floor of this direction is in view.
   };
 
   const FreeSpaceOptions& options() const { return options_; }
@@ -56,7 +56,6 @@ class SectorMap {
 ///
 /// balls    accepted balls, by their box and color in the image
 /// cost     O(pixels on the lines of sight); safe from any thread. source: own, after the AGILO free motion space
-FreeSpace find_free_space(const SectorMap& map, const Surface& surface,
-                          std::span<const Ball> balls);
+FreeSpace find_free_space(const SectorMap& map, const Surface& surface, std::span<const Ball> balls);
 
 }  // namespace tassilo

@@ -66,8 +66,8 @@ class Judge {
     int from = 0;
     for (int k = 0; k <= gap.length; ++k) {
       if (k < gap.length && kind(gap, k) != SurfaceKind::line) continue;
-      const Gap piece{gap.along_row ? gap.column + from : gap.column, gap.along_row ? gap.row : gap.row + from, k - from,
-                      gap.along_row};
+      const Gap piece{gap.along_row ? gap.column + from : gap.column, gap.along_row ? gap.row : gap.row + from,
+                      k - from, gap.along_row};
       if (piece.length > 0 && is_narrow(piece, 2)) mark(piece);
       from = k + 1;
     }
@@ -116,12 +116,13 @@ void gaps_along_rows(const Region& carpet, std::vector<Gap>& gaps) {
 
 /// Gaps below carpet pixels down to the next carpet pixel, or to the lower border: there the carpet goes on.
 void gaps_along_columns(const Surface& surface, const Region& carpet, std::vector<Gap>& gaps) {
-  const Region below = clipped(difference(translated(carpet, {.columns = 0, .rows = 1}), carpet),
-                               {0, 0, surface.width, surface.height});
+  const Region below =
+      clipped(difference(translated(carpet, {.columns = 0, .rows = 1}), carpet), {0, 0, surface.width, surface.height});
   for (const PixelRun& run : below.runs())
     for (int c = run.begin; c < run.end; ++c) {
       int end = run.row;
-      while (end < surface.height && surface.at(c, end) != SurfaceKind::carpet && surface.at(c, end) != SurfaceKind::object)
+      while (end < surface.height && surface.at(c, end) != SurfaceKind::carpet &&
+             surface.at(c, end) != SurfaceKind::object)
         ++end;
       if (end < surface.height && surface.at(c, end) == SurfaceKind::object) continue;
       gaps.push_back({c, run.row, end - run.row, false});
@@ -142,7 +143,8 @@ Surface find_surface(const SurfaceInput& input, const GroundMap* ground, const S
   Surface surface = std::move(recycled);
   surface.width = input.width;
   surface.height = input.height;
-  surface.kinds.assign(static_cast<std::size_t>(input.width) * static_cast<std::size_t>(input.height), SurfaceKind::unknown);
+  surface.kinds.assign(static_cast<std::size_t>(input.width) * static_cast<std::size_t>(input.height),
+                       SurfaceKind::unknown);
   paint(surface, *input.carpet, SurfaceKind::carpet);
   paint(surface, *input.white, SurfaceKind::wall);
   for (const Region* region : input.colored) paint(surface, *region, SurfaceKind::object);

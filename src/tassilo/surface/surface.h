@@ -11,11 +11,11 @@ namespace tassilo {
 
 /// What a pixel shows, as far as its color and its neighborhood tell.
 enum class SurfaceKind : std::uint8_t {
-  unknown, ///< Neither of the following.
-  object,  ///< A color that is no floor: ball, goal, robot.
-  carpet,  ///< Field color, and single odd pixels inside it.
-  line,    ///< White (or its blurred rim) as narrow as a field line lying there, carpet on both sides.
-  wall,    ///< White that is no line.
+  unknown,  ///< Neither of the following.
+  object,   ///< A color that is no floor: ball, goal, robot.
+  carpet,   ///< Field color, and single odd pixels inside it.
+  line,     ///< White (or its blurred rim) as narrow as a field line lying there, carpet on both sides.
+  wall,     ///< White that is no line.
 };
 
 /// One kind for every pixel, row-major.

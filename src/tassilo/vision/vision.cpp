@@ -88,8 +88,8 @@ Scene Vision::operator()(const Frame& frame, VisionWorkspace& workspace) const {
     Lines lines = timed(scene, "lines", [&] { return find_lines(view, options_.line); });
     scene.lines = std::move(lines.lines);
     scene.circles = std::move(lines.circles);
-    scene.free_space = timed(scene, "free_space",
-                             [&] { return find_free_space(*sectors_, workspace.surface, scene.balls); });
+    scene.free_space =
+        timed(scene, "free_space", [&] { return find_free_space(*sectors_, workspace.surface, scene.balls); });
   }
   scene.timing.push_back({"total", ms_since(start)});
   return scene;
