@@ -106,7 +106,7 @@ struct ClassModel {
   Region cells;                 ///< The cluster.
   Region shades;                ///< The cluster with its shades.
   UvPlane<double> nearness;     ///< Distance by which classes compete for a cell.
-  double dark = 0, bright = 0;  ///< Brightness of the samples without the outermost half percent.
+  double dark = 0, bright = 0;  ///< Brightness of the samples without outliers.
 };
 
 double quantile(std::vector<std::uint8_t>& values, double q) {
@@ -124,8 +124,8 @@ std::optional<ClassModel> model_of(ColorClass color, std::vector<YuvPixel> pixel
   for (const YuvPixel& p : pixels)
     if (contains(model.cells, p.u, p.v)) brightness.push_back(p.y);
   if (brightness.empty()) return std::nullopt;
-  model.dark = quantile(brightness, 0.005);
-  model.bright = quantile(brightness, 0.995);
+  model.dark = quantile(brightness, options.brightness_outlier_share);
+  model.bright = quantile(brightness, 1 - options.brightness_outlier_share);
   model.pixels = std::move(pixels);
   model.shades = is_gray(color) || color == ColorClass::no_color ? model.cells : with_shades(model.cells, options);
   // A cell of the cluster itself is better evidence than one of its shades: a quarter of the way to the cluster counts.
@@ -159,6 +159,7 @@ void TrainingOptions::check() const {
     throw Error(std::string("train.") + name, reason.str());
   };
   in("outlier_share", outlier_share, 0, 0.2);
+  in("brightness_outlier_share", brightness_outlier_share, 0, 0.2);
   in("min_cluster_share", min_cluster_share, 0, 0.5);
   in("closing_px", closing_px, 1, 31);
   in("opening_px", opening_px, 1, 15);

@@ -28,6 +28,9 @@ struct TrainingOptions {
   /// Share of a class's pixels that may be wrong or freak: the rarest cells of its UV histogram that together hold this
   /// share are dropped. [1], 0 .. .2
   double outlier_share = 0.002;
+  /// Share of a class's pixels at either end of its brightness that are mixed with what lies beside, or in deep shade.
+  /// [1], 0 .. .2
+  double brightness_outlier_share = 0.02;
   /// A separate cluster of a class with a smaller share of its pixels is a slip of the hand. [1], 0 .. .5
   double min_cluster_share = 0.05;
   int closing_px =

@@ -34,6 +34,22 @@ std::vector<int> lowest_rows(const Piece& piece) {
   return rows;
 }
 
+/// What lies below the lowest pixel of a column of the panel.
+enum class Below { floor, hidden, other };
+
+Below look_below(const View& view, int column, int row) {
+  constexpr int rim_px = 3;  // of mixed colors
+  for (int r = row + 1; r <= row + rim_px && view.inside(column, r); ++r)
+    if (view.surface.is_floor(column, r)) return Below::floor;
+  // Robots have gray parts above their colored ones: up to a twentieth of the image may lie between.
+  for (int r = row + 1; r <= row + rim_px + view.segmentation.height / 20 && view.inside(column, r); ++r) {
+    const ColorClass color = view.color(column, r);
+    if (is_robot_color(color) || to_string(color) == view.field.ball.color) return Below::hidden;
+    if (color != ColorClass::no_color) break;
+  }
+  return Below::other;
+}
+
 Piece piece_of(const View& view, Region region) {
   Piece piece;
   piece.box = bounding_box(region);
@@ -44,13 +60,9 @@ Piece piece_of(const View& view, Region region) {
     const int row = rows[static_cast<std::size_t>(c - piece.box.x0)];
     if (row < 0 || !view.inside(c, row + 1)) continue;
     ++piece.columns;
-    bool floor = false, hidden = false;
-    for (int r = row + 1; r <= row + 3 && view.inside(c, r); ++r) {
-      floor = floor || view.surface.is_floor(c, r);
-      hidden = hidden || is_robot_color(view.color(c, r)) || to_string(view.color(c, r)) == view.field.ball.color;
-    }
-    piece.hidden += hidden;
-    if (!floor || hidden) continue;
+    const Below below = look_below(view, c, row);
+    piece.hidden += below == Below::hidden;
+    if (below != Below::floor) continue;
     ++piece.on_floor;
     if (view.optics != nullptr)
       if (const auto point = view.optics->ground.at(c, row)) feet.push_back(*point);
