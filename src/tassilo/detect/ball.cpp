@@ -352,6 +352,8 @@ std::optional<Ball> ball_in_image(const View& view, const Region& segment, const
         ++below;
         floor += view.surface.is_floor(c, r);
       }
+  // With carpet in view a ball lies on it; without any, its shape is all there is.
+  if (below > 0 && floor == 0 && !view.segmentation.of(ColorClass::green).empty()) return std::nullopt;
   const double foot_share = below > 0 ? static_cast<double>(floor) / below : 0.5;
   Ball ball;
   ball.box = box;

@@ -212,8 +212,9 @@ std::optional<RobotSeen> robot_of(const View& view, const std::vector<Stretch>& 
   if (colored * 20 >= black && colored >= 4) robot.team = marker[0] >= marker[1] ? Team::cyan : Team::magenta;
   const bool cut_above = robot.box.y0 == 0;
   const bool cut_aside = robot.box.x0 == 0 || robot.box.x1 == view.segmentation.width;
-  // A body alone may be a shadow; a marker alone may be anything that stands on the floor.
-  if (robot.team == Team::unknown && !(cut_above || cut_aside) && view.optics == nullptr) return std::nullopt;
+  // A body alone may be a shadow or a board: its size on the floor could tell, but not from a wall of the same color.
+  const bool like_wall = view.field.walls && view.field.walls->color == view.field.robots.body;
+  if (robot.team == Team::unknown && (view.optics == nullptr || like_wall)) return std::nullopt;
   if (black < 3 && border == 0) return std::nullopt;
   if (view.optics == nullptr) return robot;
 
@@ -225,6 +226,7 @@ std::optional<RobotSeen> robot_of(const View& view, const std::vector<Stretch>& 
   // Half of the least height allows for a far top that blends with what is behind it.
   if (!cut_above && height && *height < 0.5 * view.field.robots.height.low) return std::nullopt;
   if (robot.floor->width > 2.5 * view.field.robots.width.high) return std::nullopt;
+  if (robot.team == Team::unknown && robot.floor->width > 1.3 * view.field.robots.width.high) return std::nullopt;
   if (robot.team == Team::unknown && robot.floor->width < 0.5 * view.field.robots.width.low && !cut_aside)
     return std::nullopt;
   return robot;

@@ -53,6 +53,19 @@ TEST(FindRobots, WhatStandsBehindTheWallIsNone) {
   EXPECT_TRUE(find_robots(seen.view()).empty());
 }
 
+TEST(FindRobots, WithoutMarkerItIsToldByItsSizeButNotFromBlackBoards) {
+  World world;
+  world.robots.push_back({.foot = {1.8, 0.1}, .radius = 0.2, .height = 0.5, .band = 1});
+  world.robots.push_back({.foot = {2.6, -1.6}, .radius = 0.9, .height = 0.5, .band = 1});  // too wide for a robot
+  Seen seen(test::cameras()[1], world);
+  const auto robots = find_robots(seen.view());
+  ASSERT_EQ(robots.size(), 1u);
+  EXPECT_EQ(robots[0].team, Team::unknown);
+  EXPECT_LT(distance(robots[0].floor->center, {1.8, 0.1}), 0.12);
+  seen.field.walls->color = "black";
+  EXPECT_TRUE(find_robots(seen.view()).empty());
+}
+
 TEST(FindRobots, WithoutCalibrationItTellsBoxAndTeam) {
   World world;
   world.robots.push_back({.foot = {2.0, 0.0}});
