@@ -64,11 +64,13 @@ class Input {
   /// False when interrupted.
   bool wait_for_data(const std::function<bool()>& interrupted) const {
     constexpr int kPollMs = 100;
-    pollfd watched{fd_, POLLIN, 0};
-    do {
-      if (interrupted()) return false;
-    } while (::poll(&watched, 1, kPollMs) == 0);
-    return true;
+    while (!interrupted()) {
+      pollfd watched{fd_, POLLIN, 0};
+      const int ready = ::poll(&watched, 1, kPollMs);
+      // A signal that ends the waiting brings no data: to read then would wait for it, deaf to `interrupted`.
+      if (ready > 0 || (ready < 0 && errno != EINTR)) return true;
+    }
+    return false;
   }
 
   int fd_;
