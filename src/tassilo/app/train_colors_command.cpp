@@ -88,7 +88,7 @@ void warn_of_overlap(const std::vector<std::pair<const TrainingSample*, Region>>
     }
 }
 
-/// The frames of one image or video that samples ask for, and the first line that does.
+/// The frames of one image or video that samples ask for, and the line that asks for the last of them.
 struct WantedFrames {
   std::set<std::int64_t> indices;
   int line = 0;
@@ -99,7 +99,8 @@ LoadedSamples load_samples(const std::string& file, ColorRange images_range) {
   if (list.empty()) throw Error(file, "holds no samples, must hold at least one");
   std::map<fs::path, WantedFrames> wanted;
   for (const TrainingSample& sample : list) {
-    WantedFrames& frames = wanted.try_emplace(sample.image, WantedFrames{{}, sample.line}).first->second;
+    WantedFrames& frames = wanted[sample.image];
+    if (frames.indices.empty() || sample.frame > *frames.indices.rbegin()) frames.line = sample.line;
     frames.indices.insert(sample.frame);
   }
 
@@ -113,15 +114,15 @@ LoadedSamples load_samples(const std::string& file, ColorRange images_range) {
   int group = 0;
   for (const auto& [image, frames] : wanted) {
     const std::vector<std::int64_t> indices(frames.indices.begin(), frames.indices.end());
-    const std::string first_place = fmt::format("{}:{}", file, frames.line);
+    const std::string place_of_last = fmt::format("{}:{}", file, frames.line);
     SourceOptions options;
     options.location = image.string();
     options.images_range = images_range;
-    const std::vector<Frame> pictures = read_at(first_place, [&] { return read_frames(options, indices); });
+    const std::vector<Frame> pictures = read_at(place_of_last, [&] { return read_frames(options, indices); });
     for (std::size_t i = 0; i < pictures.size(); ++i, ++group) {
       const Frame& frame = pictures[i];
       if (loaded.range && *loaded.range != frame.range)
-        throw Error(first_place,
+        throw Error(place_of_last,
                     fmt::format("{} has {} color range, images before it have {}; a table is for one range",
                                 image.string(), to_string(frame.range), to_string(*loaded.range)));
       loaded.range = frame.range;

@@ -37,9 +37,10 @@ std::optional<std::string> unknown_word(const CLI::App& verb) {
 
 std::string usage_message(const CLI::App* program, const CLI::Error& error) {
   const CLI::App* verb = program;
-  std::string name = program->get_name();
+  std::string above, name = program->get_name();
   while (!verb->get_subcommands().empty()) {
     verb = verb->get_subcommands().front();
+    above = name;
     name += " " + verb->get_name();
   }
   const std::string help = fmt::format("`{} --help` tells more\n", name);
@@ -50,7 +51,7 @@ std::string usage_message(const CLI::App* program, const CLI::Error& error) {
                        help);
   }
   if (error.get_name() == "RequiredError" && !verb->get_subcommands([](const CLI::App*) { return true; }).empty())
-    return verb->help();
+    return verb->help(above);
   return fmt::format("{}: {}\n{}", name, error.what(), help);
 }
 
