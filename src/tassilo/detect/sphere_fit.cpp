@@ -76,12 +76,12 @@ std::optional<SphereFit> fit_resting_sphere(const MountedCamera& camera, std::sp
     const Eigen::Vector3d sight = Eigen::Vector3d(s[0], s[1], s[2]) - eye;
     const double range = sight.norm();
     if (!(range > 1.05 * s[2])) return false;
-    const double sine = s[2] / range, width = std::sqrt(1 - sine * sine);
+    const double sine = s[2] / range, width = std::sqrt(1 - sine * sine), radius_angle = std::asin(sine);
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const double cosine = std::clamp(rays[i].dot(sight) / range, -1.0, 1.0);
       const double across = std::sqrt(std::max(1e-12, 1 - cosine * cosine));
       const auto k = static_cast<Eigen::Index>(i);
-      r[k] = px_per_rad * (std::acos(cosine) - std::asin(sine));
+      r[k] = px_per_rad * (std::acos(cosine) - radius_angle);
       if (jacobian == nullptr) continue;
       const Eigen::Vector3d by_center =
           -(rays[i] - cosine * sight / range) / (range * across) + (sine / (width * range)) * (sight / range);
@@ -116,7 +116,7 @@ std::optional<SphereFit> fit_resting_sphere(const MountedCamera& camera, std::sp
     if (length > 0.5 * range) step *= 0.5 * range / length;
     state += step;
     state[2] = std::clamp(state[2], options.radius.low, options.radius.high);
-    if (length < 1e-5) break;
+    if (length < 1e-4) break;  // a tenth of a millimeter
   }
   if (!residuals(state, r, nullptr)) return std::nullopt;
   SphereFit fit;
