@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 
 #include "tassilo/color/color_class.h"
 #include "tassilo/image/frame.h"

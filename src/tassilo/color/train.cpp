@@ -89,6 +89,7 @@ Region with_shades(const Region& cells, const TrainingOptions& options) {
     for (int u = run.begin; u < run.end; ++u) {
       shaded(u, run.row) = 1;
       const double du = u - kNeutral, dv = run.row - kNeutral, saturation = std::hypot(du, dv);
+      if (saturation == 0) continue;  // neutral in every light
       const double last = std::min(options.brightest_light * saturation, options.brightest_light * furthest);
       const double first = std::max(options.darkest_shade * saturation, least);
       for (double s = first; s <= last; s += 0.5) {
@@ -102,34 +103,33 @@ Region with_shades(const Region& cells, const TrainingOptions& options) {
 }
 
 struct ClassModel {
-  std::vector<YuvPixel> pixels;
-  Region cells;                 ///< The cluster.
   Region shades;                ///< The cluster with its shades.
   UvPlane<double> nearness;     ///< Distance by which classes compete for a cell.
   double dark = 0, bright = 0;  ///< Brightness of the samples without outliers.
 };
 
+/// The value below which the share `q` of the values lies, to the nearest rank; reorders them. At least one value.
 double quantile(std::vector<std::uint8_t>& values, double q) {
   const auto at = static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1) + 0.5);
   std::nth_element(values.begin(), values.begin() + at, values.end());
   return values[static_cast<std::size_t>(at)];
 }
 
-std::optional<ClassModel> model_of(ColorClass color, std::vector<YuvPixel> pixels, const TrainingOptions& options) {
+std::optional<ClassModel> model_of(ColorClass color, const std::vector<YuvPixel>& pixels,
+                                   const TrainingOptions& options) {
   if (pixels.empty()) return std::nullopt;
-  ClassModel model;
-  model.cells = cluster(histogram(pixels), options);
-  if (model.cells.empty()) return std::nullopt;
+  const Region cells = cluster(histogram(pixels), options);
+  if (cells.empty()) return std::nullopt;
   std::vector<std::uint8_t> brightness;
   for (const YuvPixel& p : pixels)
-    if (contains(model.cells, p.u, p.v)) brightness.push_back(p.y);
+    if (contains(cells, p.u, p.v)) brightness.push_back(p.y);
   if (brightness.empty()) return std::nullopt;
+  ClassModel model;
   model.dark = quantile(brightness, options.brightness_outlier_share);
   model.bright = quantile(brightness, 1 - options.brightness_outlier_share);
-  model.pixels = std::move(pixels);
-  model.shades = is_gray(color) || color == ColorClass::no_color ? model.cells : with_shades(model.cells, options);
+  model.shades = is_gray(color) || color == ColorClass::no_color ? cells : with_shades(cells, options);
   // A cell of the cluster itself is better evidence than one of its shades: a quarter of the way to the cluster counts.
-  const UvPlane<double> to_cells = distance_to(model.cells);
+  const UvPlane<double> to_cells = distance_to(cells);
   model.nearness = distance_to(model.shades);
   for (std::size_t i = 0; i < model.nearness.cells.size(); ++i) model.nearness.cells[i] += 0.25 * to_cells.cells[i];
   return model;
@@ -178,8 +178,7 @@ ColorTable train_colors(const std::vector<ColorSample>& samples, ColorRange rang
     all.insert(all.end(), sample.pixels.begin(), sample.pixels.end());
   }
   std::array<std::optional<ClassModel>, kColorClassCount + 1> models;
-  for (std::size_t k = 0; k < models.size(); ++k)
-    models[k] = model_of(static_cast<ColorClass>(k), std::move(pixels[k]), options);
+  for (std::size_t k = 0; k < models.size(); ++k) models[k] = model_of(static_cast<ColorClass>(k), pixels[k], options);
 
   ColorTable table;
   table.range = range;

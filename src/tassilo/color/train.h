@@ -33,13 +33,13 @@ struct TrainingOptions {
   double brightness_outlier_share = 0.02;
   /// A separate cluster of a class with a smaller share of its pixels is a slip of the hand. [1], 0 .. .5
   double min_cluster_share = 0.05;
-  int closing_px =
-      5;  ///< Side of the square that closes gaps between cells that were merely not drawn. [step], 1 .. 31
+  /// Side of the square that closes gaps between cells that were merely not drawn. [step], 1 .. 31
+  int closing_px = 5;
   int opening_px = 3;  ///< Side of the square that removes single cells. [step], 1 .. 15
   /// Margin around the cluster: three standard deviations of chroma noise of an ordinary camera. [step], 0 .. 20
   double noise_margin = 3.0;
-  /// Darkest shade that still counts: a colored surface in shade loses chroma and brightness in proportion. [1], .1 ..
-  /// 1
+  /// Darkest shade that still counts: a colored surface in shade loses chroma and brightness in proportion.
+  /// [1], .1 .. 1
   double darkest_shade = 0.45;
   /// Brightest light on the class relative to its samples. [1], 1 .. 2
   double brightest_light = 1.15;
@@ -56,7 +56,7 @@ struct TrainingOptions {
 /// range    quantization of the samples' frames; stored in the table
 /// returns  one table with the default priority; where two classes come near each other in the UV plane each keeps the
 ///          cells that lie nearer to it
-/// errors   none: a class whose samples are all outliers stays empty
+/// errors   throws Error when options are out of range; a class whose samples are all outliers stays empty
 /// cost     O(pixels + classes x 256^2), some 10 ms
 /// source   the AGILO training (histogram, threshold, closing, opening) with shading lines and competition (own)
 ColorTable train_colors(const std::vector<ColorSample>& samples, ColorRange range, const TrainingOptions& options = {});

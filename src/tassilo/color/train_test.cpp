@@ -95,6 +95,20 @@ TEST(TrainColors, GrayThatIsNoClassBoundsBlackAndWhite) {
   EXPECT_GT(recall(table, {ColorClass::white, 200, 127, 128}, 0.95, random), 0.98);
 }
 
+// An image without chroma: whatever class it is said to be, nothing far from neutral joins it.
+TEST(TrainColors, ANeutralColorHasNoShadesElsewhere) {
+  for (const ColorClass color : {ColorClass::green, ColorClass::black}) {
+    const std::vector<YuvPixel> neutral(200, YuvPixel{100, 128, 128});
+    const ColorTable table = train_colors({{color, 0, neutral}}, ColorRange::full);
+    EXPECT_EQ(classify(table, 100, 128, 128), color);
+    for (int v = 0; v < 256; ++v)
+      for (int u = 0; u < 256; ++u)
+        if (std::hypot(u - 128, v - 128) > 10) {
+          ASSERT_EQ(table.cell(u, v), 0) << u << ", " << v;
+        }
+  }
+}
+
 TEST(TrainingOptions, RefusesWhatIsOutOfRange) {
   TrainingOptions options;
   options.darkest_shade = 0;

@@ -81,11 +81,11 @@ class Judge {
   }
 
  private:
-  SurfaceKind& kind(const Gap& gap, int k) {
+  /// Pixel k of the gap.
+  SurfaceKind& kind(const Gap& gap, int k) const {
     const int column = gap.along_row ? gap.column + k : gap.column, row = gap.along_row ? gap.row : gap.row + k;
     return surface_.kinds[static_cast<std::size_t>(row * surface_.width + column)];
   }
-  SurfaceKind kind(const Gap& gap, int k) const { return const_cast<Judge*>(this)->kind(gap, k); }
 
   bool is_narrow(const Gap& gap, double wider) const {
     const int middle = gap.length / 2;
@@ -132,9 +132,9 @@ void gaps_along_columns(const Surface& surface, const Region& carpet, std::vecto
 }  // namespace
 
 void SurfaceOptions::check() const {
-  if (!(line_width > 0)) throw Error("line_width", "is " + std::to_string(line_width) + ", must be > 0");
-  if (!(slant >= 1)) throw Error("slant", "is " + std::to_string(slant) + ", must be >= 1");
-  if (blur_px < 0) throw Error("blur_px", "is " + std::to_string(blur_px) + ", must be >= 0");
+  if (!(line_width > 0)) throw Error("surface.line_width", "is " + std::to_string(line_width) + ", must be > 0");
+  if (!(slant >= 1)) throw Error("surface.slant", "is " + std::to_string(slant) + ", must be >= 1");
+  if (blur_px < 0) throw Error("surface.blur_px", "is " + std::to_string(blur_px) + ", must be >= 0");
 }
 
 Surface find_surface(const SurfaceInput& input, const GroundMap* ground, const SurfaceOptions& options,
