@@ -1,6 +1,7 @@
 #include "tassilo/vision/options.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "tassilo/base/error.h"
 #include "tassilo/files/nearest_name.h"
@@ -106,6 +107,11 @@ MountSigma VisionOptions::mount_sigma() const {
 }
 
 void VisionOptions::check() const {
+  const auto sigma = [](const char* name, double value) {
+    if (!(value >= 0 && std::isfinite(value))) throw Error(name, "is " + std::to_string(value) + ", must be >= 0");
+  };
+  sigma("mount_angle_sigma", mount_angle_sigma);
+  sigma("mount_height_sigma", mount_height_sigma);
   surface.check();
   ball.check();
   goal.check();

@@ -135,6 +135,18 @@ TEST(VisionOptions, EveryKeyIsReadAndBounded) {
   }
 }
 
+// No NaN may reach a covariance, and so a scene.
+TEST(VisionOptions, RefusesSigmasThatAreNone) {
+  for (const double bad : {-1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    VisionOptions options;
+    options.mount_angle_sigma = bad;
+    EXPECT_THROW(options.check(), Error);
+    options = {};
+    options.mount_height_sigma = bad;
+    EXPECT_THROW(options.check(), Error);
+  }
+}
+
 TEST(VisionOptions, AnUnknownKeySaysWhatWasMeant) {
   const std::vector<std::pair<std::string, Setting>> settings{
       {"bal_max", Setting{"robot.yaml:3:10", "vision.bal_max", "3"}}};
