@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tassilo/camera/mount.h"
+#include "tassilo/geometry/angle.h"
 #include "tassilo/image/frame.h"
 
 namespace tassilo::test {
@@ -151,6 +152,17 @@ inline std::vector<MountedCamera> cameras() {
   const CameraMount middle{.x = 0.1, .y = 0, .z = 0.45, .roll = -0.005, .pitch = 0.314, .yaw = 0.009};
   const CameraMount low{.x = 0.05, .y = -0.02, .z = 0.3, .roll = 0.01, .pitch = 0.35, .yaw = 0.3};
   return {MountedCamera(wide, high), MountedCamera(plumb, middle), MountedCamera(fish, low)};
+}
+
+/// The camera after the robot frame turned by `angle` about its origin: it shows the same image, and everything it
+/// tells must turn along. [rad]
+inline MountedCamera turned(const MountedCamera& camera, double angle) {
+  CameraMount mount = camera.mount();
+  const double x = mount.x, y = mount.y;
+  mount.x = std::cos(angle) * x - std::sin(angle) * y;
+  mount.y = std::sin(angle) * x + std::cos(angle) * y;
+  mount.yaw = wrap_angle(mount.yaw + angle);
+  return MountedCamera(camera.model(), mount);
 }
 
 }  // namespace tassilo::test

@@ -23,21 +23,22 @@ SectorMap::Ray follow(const MountedCamera& camera, FloorPoint origin, double ang
   bool entered = false;
   for (double range = 0.02; range <= max_range; range += step) {
     const auto pixel = pixel_at(range);
-    const int c = pixel ? static_cast<int>(std::lround(pixel->x)) : -1;
-    const int r = pixel ? static_cast<int>(std::lround(pixel->y)) : -1;
-    if (c < 0 || r < 0 || c >= width || r >= height) {
+    // Beside the view a pixel may lie further off than a whole number holds.
+    if (!pixel || !(pixel->x > -0.5 && pixel->x < width - 0.5 && pixel->y > -0.5 && pixel->y < height - 0.5)) {
       if (entered) return ray;  // left the view
       step = 0.01 * range;      // on the way to it
       continue;
     }
     entered = true;
+    const auto c = static_cast<std::int16_t>(std::lround(pixel->x)),
+               r = static_cast<std::int16_t>(std::lround(pixel->y));
     // Half a pixel further each time: no pixel on the way is missed.
     constexpr double ahead = 1e-3;
     const auto next = pixel_at(range + ahead);
     const double per_meter = next ? distance(*pixel, *next) / ahead : 0;
     step = std::clamp(0.5 / std::max(per_meter, 1e-9), 5e-4, 0.2);
     if (ray.steps.empty() || ray.steps.back().column != c || ray.steps.back().row != r)
-      ray.steps.push_back({static_cast<std::int16_t>(c), static_cast<std::int16_t>(r), static_cast<float>(range)});
+      ray.steps.push_back({c, r, static_cast<float>(range)});
   }
   return ray;
 }
@@ -54,22 +55,22 @@ class Walker {
 
   RayEnd operator()(const SectorMap::Ray& ray) const {
     if (ray.steps.empty()) return {};
-    double free_until = 0;  // floor nearer than the view counts as free once the first pixel is
-    double ball_from = -1;  // where the ball began to hide the floor
-    int odd = 0;            // pixels that are neither floor nor ball since the last floor
+    double free_until = 0;     // floor nearer than the view counts as free once the first pixel is
+    bool behind_ball = false;  // the ball hides the floor from here on
+    int odd = 0;               // pixels that are neither floor nor ball since the last floor
     for (const SectorMap::Step& step : ray.steps) {
       if (surface_.is_floor(step.column, step.row)) {
         free_until = step.range;
-        ball_from = -1;
+        behind_ball = false;
         odd = 0;
       } else if (on_ball(step.column, step.row)) {
-        if (ball_from < 0) ball_from = free_until;
+        behind_ball = true;
       } else if (++odd > map_.options().noise_px) {
         // Directly behind the ball: the floor up to the obstacle is hidden, not seen.
-        return {ball_from >= 0 ? SectorState::free : SectorState::blocked, free_until};
+        return {behind_ball ? SectorState::free : SectorState::blocked, free_until};
       }
     }
-    return {odd > 0 && ball_from < 0 ? SectorState::blocked : SectorState::free, free_until};
+    return {odd > 0 && !behind_ball ? SectorState::blocked : SectorState::free, free_until};
   }
 
  private:
@@ -105,27 +106,27 @@ SectorMap::SectorMap(const MountedCamera& camera, const FreeSpaceOptions& option
     : options_(options), origin_{camera.center().x, camera.center().y} {
   options_.check();
   angle_increment_ = radians(options_.sector_deg);
-  // Only directions the camera can see, sector centres on multiples of the width.
+  // Only directions the camera can see. The circle is cut open behind the camera, wherever that looks.
   const auto count = static_cast<int>(std::floor(2 * std::numbers::pi / angle_increment_ + 1e-9));
+  const int lowest = static_cast<int>(std::lround(camera.mount().yaw / angle_increment_)) - count / 2;
   int first = count, last = -1;
   std::vector<std::vector<Ray>> all(static_cast<std::size_t>(count));
   for (int k = 0; k < count; ++k) {
-    const int sector = k - count / 2;
     auto& rays = all[static_cast<std::size_t>(k)];
     bool seen = false;
     for (int i = 0; i < options_.rays; ++i) {
       const double offset = (i + 0.5) / options_.rays - 0.5;
-      rays.push_back(follow(camera, origin_, (sector + offset) * angle_increment_, options_.max_range));
+      rays.push_back(follow(camera, origin_, (lowest + k + offset) * angle_increment_, options_.max_range));
       seen = seen || !rays.back().steps.empty();
     }
     if (!seen) continue;
     first = std::min(first, k);
     last = std::max(last, k);
   }
-  angle_min_ = (first - count / 2) * angle_increment_;
+  if (last < 0) return;
+  angle_min_ = wrap_angle((lowest + first) * angle_increment_);
   for (int k = first; k <= last; ++k)
     for (Ray& ray : all[static_cast<std::size_t>(k)]) rays_.push_back(std::move(ray));
-  if (rays_.empty()) angle_min_ = 0;
 }
 
 FreeSpace find_free_space(const SectorMap& map, const Surface& surface, std::span<const Ball> balls) {

@@ -19,6 +19,10 @@ struct FreeSpaceOptions {
 };
 
 /// For one mounted camera: which pixels lie along which direction, from near to far. Computed once; immutable.
+///
+/// Sector i is centred on angle_min + i * angle_increment in the robot frame; centres are multiples of the increment.
+/// Only the arc in which floor is in view has sectors: none when the camera sees no floor. The arc lies around the
+/// camera's heading, so a camera looking back has angles beyond pi.
 class SectorMap {
  public:
   SectorMap(const MountedCamera& camera, const FreeSpaceOptions& options);
@@ -33,9 +37,9 @@ class SectorMap {
   };
 
   const FreeSpaceOptions& options() const { return options_; }
-  FloorPoint origin() const { return origin_; }
-  double angle_min() const { return angle_min_; }
-  double angle_increment() const { return angle_increment_; }
+  FloorPoint origin() const { return origin_; }                ///< Below the camera.
+  double angle_min() const { return angle_min_; }              ///< In [-pi, pi); 0 without sectors. [rad]
+  double angle_increment() const { return angle_increment_; }  ///< [rad]
   std::size_t sectors() const { return rays_.size() / static_cast<std::size_t>(options_.rays); }
   std::span<const Ray> rays(std::size_t sector) const {
     return std::span(rays_).subspan(sector * static_cast<std::size_t>(options_.rays),
@@ -54,7 +58,9 @@ class SectorMap {
 /// Each line of sight is followed over carpet and lines; the first thing that is neither, and is more than noise, ends
 /// it. An accepted ball is no obstacle but hides the floor behind it.
 ///
-/// balls    accepted balls, by their box and color in the image
+/// surface  of an image of the map's camera
+/// balls    accepted balls, by their box and disc in the image
+/// returns  one state and one range for each of the map's sectors
 /// cost     O(pixels on the lines of sight); safe from any thread. source: own, after the AGILO free motion space
 FreeSpace find_free_space(const SectorMap& map, const Surface& surface, std::span<const Ball> balls);
 

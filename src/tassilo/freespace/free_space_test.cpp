@@ -97,14 +97,36 @@ TEST(FindFreeSpace, TheBallIsNoObstacleButHidesTheFloorBehindIt) {
   EXPECT_LT(without_range, place.x);
 }
 
-TEST(FindFreeSpace, SectorsWithoutFloorAreUnseen) {
+TEST(FindFreeSpace, TurningTheMountByWholeSectorsTurnsTheArcAlone) {
+  const double sector_deg = 2;
+  for (const MountedCamera& camera : test::cameras())
+    for (const int sectors : {45, 89, 90, -80}) {
+      SCOPED_TRACE(testing::Message() << camera.model().width << " px, turned by " << sectors << " sectors");
+      World world;
+      world.wall_x = 3;
+      const Known known(camera, world);
+      const double angle = radians(sectors * sector_deg);
+      const FreeSpace ahead = find_free_space(SectorMap(camera, {.sector_deg = sector_deg}), known.surface, {});
+      const FreeSpace aside =
+          find_free_space(SectorMap(test::turned(camera, angle), {.sector_deg = sector_deg}), known.surface, {});
+      EXPECT_GE(aside.angle_min, -std::numbers::pi - 1e-9);
+      EXPECT_LE(aside.angle_min, std::numbers::pi);
+      EXPECT_NEAR(std::remainder(aside.angle_min - ahead.angle_min - angle, 2 * std::numbers::pi), 0, 1e-9);
+      ASSERT_EQ(aside.states, ahead.states);
+      for (std::size_t i = 0; i < ahead.ranges.size(); ++i) EXPECT_NEAR(aside.ranges[i], ahead.ranges[i], 0.01);
+    }
+}
+
+TEST(FindFreeSpace, WithoutFloorInViewThereAreNoSectors) {
   CameraModel model = test::cameras()[1].model();
   // Looks up: no floor at all.
   const MountedCamera up(model, {.x = 0, .y = 0, .z = 0.5, .roll = 0, .pitch = -1.2, .yaw = 0});
   const SectorMap map(up, {});
   const Known known(up, World{});
   const FreeSpace space = find_free_space(map, known.surface, {});
-  for (const SectorState state : space.states) EXPECT_EQ(state, SectorState::unseen);
+  EXPECT_TRUE(space.states.empty());
+  EXPECT_TRUE(space.ranges.empty());
+  EXPECT_EQ(space.angle_min, 0);
 }
 
 TEST(FindFreeSpace, FloorUpToTheMaximalRangeIsFree) {
