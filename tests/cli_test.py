@@ -3,9 +3,11 @@
 
 usage: tests/cli_test.py PROGRAM [unittest arguments]
 """
+import contextlib
 import json
 import os
 import pathlib
+import pty
 import signal
 import subprocess
 import time
@@ -218,6 +220,14 @@ class Pictures(CliTest):
         self.fails("run", *SEE, "--source", "mixed", "--output", "mixed.jsonl", says="mixed/3.png")
         self.assertEqual(len(self.scenes("mixed.jsonl")), 2)
 
+    def test_photo_of_full_range(self):
+        ffmpeg("-i", VIDEO, "-frames:v", 1, "-q:v", 2, self.folder / "photo.jpg")
+        self.fails("run", *SEE, "--source", "photo.jpg", says=("photo.jpg", "full color range", "limited", "train"))
+        ffmpeg("-i", DATA / "train_div/stills.mkv", "-frames:v", 1, self.folder / "still.png")
+        self.write("full_samples.yaml", "- {image: still.png, class: green, rectangle: [310, 79, 353, 119]}\n")
+        self.succeeds("train", "colors", "full_samples.yaml", "--output", "full.yaml", "--range", "full")
+        self.succeeds("run", "--colors", "full.yaml", "--source", "photo.jpg")
+
     def test_names_of_all_kinds(self):
         for name in ("a b.png", 'quote".png', "ünï.png", os.fsdecode(b"bad\xff.png"), "--dash.png"):
             with self.subTest(repr(name)):
@@ -273,6 +283,22 @@ class Pipes(CliTest):
         self.assertEqual([json.loads(line)["frame"] for line in result.out.splitlines()], [0, 1, 2])
         self.assertIn("3 frames in", result.err)
         self.assertEqual(self.succeeds(*self.run_clip("--output", "-", "--quiet")).err, "")
+
+    def test_progress_on_a_terminal(self):
+        (self.folder / "cut.mkv").write_bytes(VIDEO.read_bytes()[:500000])
+        ours, theirs = pty.openpty()
+        child = self.start("run", *SEE, "--source", "cut.mkv", "--output", "terminal.jsonl", stdout=subprocess.DEVNULL, stderr=theirs)
+        os.close(theirs)
+        shown = b""
+        with contextlib.suppress(OSError):  # how the end of a terminal looks
+            while piece := os.read(ours, 4096):
+                shown += piece
+        os.close(ours)
+        self.assertEqual(child.wait(TIMEOUT_S), 1)
+        *progress, blank, end, _ = decoded(shown).replace("\r\n", "\n\r").split("\r")[1:]
+        self.assertTrue(all(line.startswith("frame ") for line in progress) and progress, shown)
+        self.assertEqual(blank.strip(), "", shown)
+        self.assertTrue(end.startswith("tassilo: cut.mkv: frame "), shown)
 
     def test_full_device(self):
         self.fails(*self.run_clip("--output", "/dev/full"), says="/dev/full: cannot be written: No space left on device")
