@@ -67,14 +67,13 @@ std::optional<RestingSphere> first_guess(const View& view, const MountedCamera& 
   const double furthest = longest_distance(view.field);
   if (camera.center().z > radius)
     if (const auto foot = camera.floor_point(middle, radius, 2 * furthest)) return RestingSphere{*foot, radius};
-  const auto ray = camera.ray(middle);
   const auto left = camera.ray({box.x0 - 0.5, middle.y}), right = camera.ray({box.x1 - 0.5, middle.y});
-  if (!ray || !left || !right) return std::nullopt;
+  if (!left || !right) return std::nullopt;
   const double half = std::acos(std::clamp(dot(*left, *right), -1.0, 1.0)) / 2;
   const double range = std::min(radius / std::max(std::sin(half), 1e-3), furthest);
-  const double flat = std::hypot(ray->x, ray->y);
-  if (flat < 1e-6) return std::nullopt;
-  return RestingSphere{{camera.center().x + range * ray->x / flat, camera.center().y + range * ray->y / flat}, radius};
+  const auto foot = floor_at_range(camera, middle, range);
+  if (!foot) return std::nullopt;
+  return RestingSphere{*foot, radius};
 }
 
 /// Sub-pixel edges along the outline of a sphere; left out: beyond the border and where a robot hides the rim.
@@ -89,9 +88,8 @@ std::vector<PixelPoint> outline_edges(const View& view, const MountedCamera& cam
   for (const OutlinePoint& p : outline(camera, sphere, count)) {
     bool usable = true;
     for (const double along : {-reach, 1.0, reach}) {
-      const PixelPoint q = p.at + along * p.outward;
-      const int c = static_cast<int>(std::lround(q.x)), r = static_cast<int>(std::lround(q.y));
-      usable = usable && view.inside(c, r) && (with_hidden || along < 0 || !is_robot_color(view.color(c, r)));
+      const auto q = pixel_of(view, p.at + along * p.outward);
+      usable = usable && q && (with_hidden || along < 0 || !is_robot_color(view.color(q->column, q->row)));
     }
     if (!usable) continue;
     if (const auto edge = find_edge(view.frame, {.at = p.at, .outward = p.outward, .reach_px = reach}))
@@ -117,12 +115,11 @@ DiscView look_at_disc(const View& view, const MountedCamera& camera, const Resti
     polygon.push_back(p.at);
     if (p.outward.y < 0.5) continue;  // the lower third of the rim
     for (const double along : {2.0, 3.0}) {
-      const PixelPoint q = p.at + along * p.outward;
-      const int c = static_cast<int>(std::lround(q.x)), r = static_cast<int>(std::lround(q.y));
-      if (!view.inside(c, r)) continue;
+      const auto q = pixel_of(view, p.at + along * p.outward);
+      if (!q) continue;
       ++look.foot;
-      look.foot_floor += view.surface.is_floor(c, r);
-      look.foot_hidden += is_robot_color(view.color(c, r));
+      look.foot_floor += view.surface.is_floor(q->column, q->row);
+      look.foot_hidden += is_robot_color(view.color(q->column, q->row));
     }
   }
   const int w = view.segmentation.width, h = view.segmentation.height;
@@ -143,11 +140,12 @@ DiscView look_at_disc(const View& view, const MountedCamera& camera, const Resti
 
 /// Distance from the eye's foot at which the lower (sign +1) tangent to a resting sphere goes down by `depression`. [m]
 double tangent_distance(double eye_height, double radius, double depression) {
+  const double down = eye_height - radius;
   const auto angle = [&](double d) {
-    const double down = eye_height - radius;
     return std::atan2(down, d) + std::asin(std::min(1.0, radius / std::hypot(d, down)));
   };
-  double near = 1e-3, far = 1e3;
+  // With the eye below the ball's centre no tangent starts nearer than where the ball would touch the eye.
+  double near = std::max(1e-3, std::sqrt(std::max(0.0, radius * radius - down * down))), far = 1e3;
   for (int i = 0; i < 60; ++i) {
     const double middle = std::sqrt(near * far);
     (angle(middle) > depression ? near : far) = middle;
@@ -165,13 +163,14 @@ std::optional<DistanceBounds> tangent_bounds(const View& view, const MountedCame
   std::optional<PixelPoint> last_own, first_floor;
   for (double along = -3; along <= 6; along += 0.25) {
     const PixelPoint p = lowest.at + along * lowest.outward;
-    const int c = static_cast<int>(std::lround(p.x)), r = static_cast<int>(std::lround(p.y));
-    if (!view.inside(c, r)) return std::nullopt;
-    if (view.color(c, r) == ball_color(view.field)) {
+    const auto pixel = pixel_of(view, p);
+    if (!pixel) return std::nullopt;
+    const ColorClass color = view.color(pixel->column, pixel->row);
+    if (color == ball_color(view.field)) {
       last_own = p;
-    } else if (is_robot_color(view.color(c, r))) {
+    } else if (is_robot_color(color)) {
       return std::nullopt;
-    } else if (last_own && view.surface.is_floor(c, r)) {
+    } else if (last_own && view.surface.is_floor(pixel->column, pixel->row)) {
       first_floor = p;
       break;
     }

@@ -11,7 +11,7 @@ struct BallOptions {
   int min_area_px = 4;  ///< Fewer pixels of the ball's color are noise. [px^2], >= 1
   int max_balls = 5;    ///< Hypotheses reported, best first. >= 1
   /// The segment may be smaller than the projected disc by these factors, for a highlight or a shadow; the highlight is
-  /// on top, so rows may miss more than columns. Visible parts only. [1], 0 .. 1, min_height < min_width
+  /// on top, so rows may miss more than columns. Asked of balls that are not cut or hidden. [1], 0 .. 1
   double min_width = 0.7, min_height = 0.55;
   /// Least share of the visible disc that shows the ball's color. [1], 0 .. 1
   double min_cover = 0.5;
@@ -23,9 +23,10 @@ struct BallOptions {
   double bound_sigmas = 2.5;
   /// While driving the robot nods, and a ball's size no longer fits where it seems to lie. What fits no ball with the
   /// mount as calibrated may fit one with the camera pitched by up to this angle, tried in steps; trusted half as much,
-  /// with the step as uncertainty. 0: never. [deg], 0 .. 10; > 0
-  double max_nod_deg = 2.0, nod_step_deg = 0.5;
-  void check() const;  ///< Throws Error naming the first field out of range.
+  /// with the step as uncertainty. 0: never. [deg], 0 .. 10
+  double max_nod_deg = 2.0;
+  double nod_step_deg = 0.5;  ///< [deg], > 0
+  void check() const;         ///< Throws Error naming the first field out of range.
 };
 
 /// Balls, best first; empty when none.

@@ -7,6 +7,7 @@
 #include "tassilo/base/error.h"
 #include "tassilo/detect/sphere_fit.h"
 #include "tassilo/detect/test_view.h"
+#include "tassilo/geometry/angle.h"
 
 namespace tassilo {
 namespace {
@@ -112,6 +113,34 @@ TEST(FitRestingSphere, ComesBackFromItsOwnOutline) {
       EXPECT_LT(distance(fit->sphere.foot, place), 0.01 * norm(place));
       EXPECT_LT(fit->rms_px, 0.05);
     }
+}
+
+TEST(FitRestingSphere, ABallStraightBelowTheEyeIsOneLikeAnyOther) {
+  CameraModel model = test::cameras()[2].model();
+  const MountedCamera down(model, {.x = 0.2, .y = -0.1, .z = 1.2, .roll = 0, .pitch = radians(90), .yaw = 0});
+  const RestingSphere truth{{0.2, -0.1}, 0.105};
+  std::vector<PixelPoint> edges;
+  for (const OutlinePoint& p : outline(down, truth, 24)) edges.push_back(p.at);
+  ASSERT_EQ(edges.size(), 24u);
+  const auto fit =
+      fit_resting_sphere(down, edges, truth, {.radius = {0.10, 0.11}, .edge_sigma_px = 0.1, .iterations = 30});
+  ASSERT_TRUE(fit.has_value());
+  EXPECT_LT(distance(fit->sphere.foot, truth.foot), 1e-3);
+  EXPECT_LT(fit->rms_px, 0.05);
+}
+
+TEST(FindBalls, ItsBoundsHoldForAnEyeBelowItsMiddle) {
+  const MountedCamera low(test::cameras()[1].model(), {.x = 0, .y = 0, .z = 0.08, .roll = 0, .pitch = 0.1, .yaw = 0});
+  for (const double place : {0.45, 0.7, 1.1}) {
+    SCOPED_TRACE(place);
+    const Seen seen(low, ball_at({place, 0.05}, 0.105));
+    const auto balls = find_balls(seen.view());
+    ASSERT_EQ(balls.size(), 1u);
+    const DistanceBounds bounds = balls[0].floor->bounds;
+    EXPECT_LE(bounds.near, std::hypot(place, 0.05));
+    EXPECT_GE(bounds.far, std::hypot(place, 0.05));
+    EXPECT_LT(bounds.far - bounds.near, 0.5 * place);
+  }
 }
 
 TEST(BallOptions, RefusesWhatIsOutOfRange) {

@@ -3,10 +3,12 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <string>
 
 #include "tassilo/base/error.h"
+#include "tassilo/base/median.h"
 #include "tassilo/detect/edge.h"
 #include "tassilo/geometry/angle.h"
 #include "tassilo/region/algebra.h"
@@ -15,6 +17,8 @@
 
 namespace tassilo {
 namespace {
+
+using std::numbers::pi;
 
 /// One piece of a goal's panel.
 struct Piece {
@@ -67,23 +71,17 @@ Piece piece_of(const View& view, Region region) {
     if (view.optics != nullptr)
       if (const auto point = view.optics->ground.at(c, row)) feet.push_back(*point);
   }
-  if (!feet.empty()) {
-    const auto middle = feet.begin() + static_cast<std::ptrdiff_t>(feet.size() / 2);
-    std::nth_element(feet.begin(), middle, feet.end(), [](FloorPoint a, FloorPoint b) { return norm(a) < norm(b); });
-    piece.foot = *middle;
-  }
+  if (!feet.empty()) piece.foot = median(std::move(feet), [](FloorPoint foot) { return norm(foot); });
   return piece;
 }
 
 /// Does the panel reach as high above the floor as a goal, where its foot stands?
 bool has_goal_height(const View& view, const Piece& piece, double height) {
   if (piece.box.y0 == 0) return true;  // cut above
-  const auto ray = view.optics->camera.ray({(piece.box.x0 + piece.box.x1 - 1) / 2.0, piece.box.y0 - 0.5});
-  if (!ray) return false;
-  const RobotPoint eye = view.optics->camera.center();
-  const double range = distance(*piece.foot, {eye.x, eye.y});
-  const double top = eye.z + range * ray->z / std::hypot(ray->x, ray->y);
-  return top > 0.4 * height && top < 2 * height;
+  const MountedCamera& camera = view.optics->camera;
+  const auto top = height_at_range(camera, {(piece.box.x0 + piece.box.x1 - 1) / 2.0, piece.box.y0 - 0.5},
+                                   distance(*piece.foot, foot_of(camera)));
+  return top && *top > 0.4 * height && *top < 2 * height;
 }
 
 /// One end of the panel: a vertical edge.
@@ -93,12 +91,6 @@ struct End {
   std::optional<FloorPoint> foot;
   double foot_sigma = 0;  ///< Along the sight. [m]
 };
-
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// The left (side -1) or right (+1) end of the pieces; nothing where the border cuts it or a robot hides it.
 std::optional<End> end_of(const View& view, const Region& goal, int side, const GoalOptions& options) {
@@ -133,7 +125,10 @@ std::optional<End> end_of(const View& view, const Region& goal, int side, const 
     const PixelPoint rim{end.column + side * 0.5, static_cast<double>(end.row)};
     const auto edge = find_edge(view.frame, {.at = rim, .outward = {double(side), 0}, .reach_px = 3});
     const auto ray = camera.ray(edge.value_or(rim));
-    if (ray) azimuths.push_back(std::atan2(ray->y, ray->x));
+    if (!ray) continue;
+    const double azimuth = std::atan2(ray->y, ray->x);
+    // Near the first one, so that they can be ordered where azimuths jump from pi to -pi.
+    azimuths.push_back(azimuths.empty() ? azimuth : azimuths[0] + std::remainder(azimuth - azimuths[0], 2 * pi));
   }
   const auto rows = static_cast<int>(ends.size());
   if (cut * 4 > rows || hidden * 2 > rows || azimuths.size() < 3) return std::nullopt;
@@ -141,9 +136,9 @@ std::optional<End> end_of(const View& view, const Region& goal, int side, const 
   // Vertical edges have one azimuth; the outermost ones are the post's (a far corner of the panel lies further in).
   std::ranges::sort(azimuths);
   const std::size_t n = azimuths.size();
-  std::vector<double> outer(side < 0 ? azimuths.end() - static_cast<std::ptrdiff_t>((n + 1) / 2) : azimuths.begin(),
-                            side < 0 ? azimuths.end() : azimuths.begin() + static_cast<std::ptrdiff_t>((n + 1) / 2));
-  end.azimuth = median(outer);
+  const auto half = static_cast<std::ptrdiff_t>((n + 1) / 2);
+  end.azimuth = wrap_angle(median(side < 0 ? std::vector(azimuths.end() - half, azimuths.end())
+                                           : std::vector(azimuths.begin(), azimuths.begin() + half)));
   end.sigma = options.edge_sigma_px / camera.model().fx;
   // The foot of the end: the lowest row whose outermost pixel lies at this azimuth and stands on the floor.
   for (auto it = ends.rbegin(); it != ends.rend(); ++it) {
@@ -169,7 +164,7 @@ struct Mouth {
 
 /// The mouth of known width that fits both ends' bearings and feet best, by Gauss-Newton on (middle, direction).
 std::optional<Mouth> fit_mouth(const View& view, const End& left, const End& right, double width) {
-  const FloorPoint eye{view.optics->camera.center().x, view.optics->camera.center().y};
+  const FloorPoint eye = foot_of(view.optics->camera);
   const double opening = wrap_angle(left.azimuth - right.azimuth);
   if (opening <= 0) return std::nullopt;
   const auto along = [&](double azimuth, double range) {
@@ -237,8 +232,7 @@ std::optional<Goal> goal_of(const View& view, GoalColor color, const FieldModel:
   std::vector<Region> parts{standing.front().region};
   const auto widest_px = [&]() -> double {
     if (view.optics == nullptr) return 1.5 * box.width();
-    const RobotPoint eye = view.optics->camera.center();
-    const double range = std::max(0.3, distance(*standing.front().foot, {eye.x, eye.y}));
+    const double range = std::max(0.3, distance(*standing.front().foot, foot_of(view.optics->camera)));
     return 1.3 * view.optics->camera.model().fx * model.width / range + 4;
   }();
   const auto take = [&](const std::vector<Piece>& pieces, std::size_t from, bool must_overlap_rows) {
@@ -270,12 +264,10 @@ std::optional<Goal> goal_of(const View& view, GoalColor color, const FieldModel:
   }
   if (left && left->foot) goal.posts.push_back({PostSide::left, *left->foot});
   if (right && right->foot) goal.posts.push_back({PostSide::right, *right->foot});
-  const auto ray = view.optics->camera.ray({(box.x0 + box.x1 - 1) / 2.0, (box.y0 + box.y1 - 1) / 2.0});
-  if (ray && standing.front().foot) {
-    const RobotPoint eye = view.optics->camera.center();
-    const double range = distance(*standing.front().foot, {eye.x, eye.y}), flat = std::hypot(ray->x, ray->y);
-    goal.bearing = bearing(FloorPoint{eye.x + range * ray->x / flat, eye.y + range * ray->y / flat});
-  }
+  const MountedCamera& camera = view.optics->camera;
+  const auto middle = floor_at_range(camera, {(box.x0 + box.x1 - 1) / 2.0, (box.y0 + box.y1 - 1) / 2.0},
+                                     distance(*standing.front().foot, foot_of(camera)));
+  if (middle) goal.bearing = bearing(*middle);
   return goal;
 }
 

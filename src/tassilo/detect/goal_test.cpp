@@ -4,6 +4,7 @@
 
 #include "tassilo/detect/test_view.h"
 #include "tassilo/geometry/angle.h"
+#include "tassilo/geometry/pose2.h"
 
 namespace tassilo {
 namespace {
@@ -40,6 +41,31 @@ TEST(FindGoals, AKeeperDoesNotMakeTwoOfIt) {
   const auto goals = find_goals(seen.view());
   ASSERT_EQ(goals.size(), 1u);
   EXPECT_NEAR(degrees(goals[0].bearing.value()), 0, 0.5);
+}
+
+// Wherever the camera looks on the robot, also where a post's azimuth jumps from pi to -pi.
+TEST(FindGoals, TurningTheMountTurnsTheGoal) {
+  World world;
+  world.wall_x = 3;
+  world.goal = {{-0.6, 0.9}};
+  const MountedCamera camera = test::cameras()[1];
+  Seen seen(camera, world);
+  const auto ahead = find_goals(seen.view());
+  ASSERT_EQ(ahead.size(), 1u);
+  ASSERT_EQ(ahead[0].posts.size(), 2u);
+  const FloorPoint eye = foot_of(camera);
+  const double left = bearing(ahead[0].posts[0].position - eye), right = bearing(ahead[0].posts[1].position - eye);
+  for (const double angle : {0.5, radians(180), radians(180) - left, radians(180) - right, radians(-100)}) {
+    SCOPED_TRACE(degrees(angle));
+    seen.optics = Optics(test::turned(camera, angle), seen.optics.mount_sigma);
+    const auto aside = find_goals(seen.view());
+    ASSERT_EQ(aside.size(), 1u);
+    ASSERT_EQ(aside[0].posts.size(), 2u);
+    const auto expected = make_pose2<RobotFrame, RobotFrame>(0, 0, angle);
+    for (const std::size_t i : {0, 1})
+      EXPECT_LT(distance(aside[0].posts[i].position, expected * ahead[0].posts[i].position), 1e-4);
+    EXPECT_NEAR(wrap_angle(aside[0].bearing.value() - ahead[0].bearing.value() - angle), 0, 1e-5);
+  }
 }
 
 TEST(FindGoals, YellowThatDoesNotStandOnTheFloorIsNone) {

@@ -209,11 +209,12 @@ void find_straight(const View& view, std::vector<LinePoint> points, LineKind kin
     }
     // What lies on the line, or on its rim, is explained.
     std::vector<bool> used(points.size(), false);
-    const auto [low, high] = std::ranges::minmax(first.floor.x, last.floor.x);
+    const auto [low_x, high_x] = std::ranges::minmax(first.floor.x, last.floor.x);
+    const auto [low_y, high_y] = std::ranges::minmax(first.floor.y, last.floor.y);
+    constexpr double rim = 0.05;  // [m]
     for (const std::size_t i : in_plane(points, normal, 2 * tolerance)) {
       const double x = points[i].floor.x, y = points[i].floor.y;
-      const auto [low_y, high_y] = std::ranges::minmax(first.floor.y, last.floor.y);
-      used[i] = x >= low - 0.05 && x <= high + 0.05 && y >= low_y - 0.05 && y <= high_y + 0.05;
+      used[i] = x >= low_x - rim && x <= high_x + rim && y >= low_y - rim && y <= high_y + rim;
     }
     for (const std::size_t i : piece.points) used[i] = true;
     std::size_t kept = 0;
@@ -259,8 +260,8 @@ bool is_supported(const View& view, const std::vector<LinePoint>& points, FloorP
     const FloorPoint p = center + FloorPoint{radius * std::cos(angle), radius * std::sin(angle)};
     const auto pixel = view.optics->camera.project({p.x, p.y, 0});
     if (!pixel) continue;
-    const int c = static_cast<int>(std::lround(pixel->x)), r = static_cast<int>(std::lround(pixel->y));
-    if (!view.inside(c, r)) continue;
+    const auto place = pixel_of(view, *pixel);
+    if (!place) continue;
     if (seen[static_cast<std::size_t>(k)]) {
       ++supported;
       continue;
@@ -269,8 +270,8 @@ bool is_supported(const View& view, const std::vector<LinePoint>& points, FloorP
     constexpr double thinnest_px = 2;
     const auto point = line_point(view, *pixel);
     const Eigen::RowVector2d outward(std::cos(angle), std::sin(angle));
-    missing +=
-        view.surface.is_floor(c, r) && point && view.field.line_width > thinnest_px * (outward * point->per_px).norm();
+    missing += view.surface.is_floor(place->column, place->row) && point &&
+               view.field.line_width > thinnest_px * (outward * point->per_px).norm();
   }
   return supported * (2 * std::numbers::pi / bins) >= options.min_arc && missing <= supported / 2;
 }

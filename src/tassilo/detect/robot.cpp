@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
+#include <limits>
 #include <optional>
 #include <string>
 
 #include "tassilo/base/error.h"
+#include "tassilo/base/median.h"
 #include "tassilo/detect/edge.h"
+#include "tassilo/geometry/angle.h"
 
 namespace tassilo {
 namespace {
@@ -115,12 +117,6 @@ bool belong_together(const View& view, const Stretch& a, const Stretch& b, const
   return std::abs(a.range() - b.range()) <= options.max_step;
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Outline point nearest to us, from feet smoothed over neighboring columns; nothing when no foot is seen.
 std::optional<PixelPoint> nearest_foot(const View& view, const std::vector<Stretch>& parts) {
   std::vector<PixelPoint> feet;
@@ -135,7 +131,7 @@ std::optional<PixelPoint> nearest_foot(const View& view, const std::vector<Stret
     const std::size_t from = i >= 2 ? i - 2 : 0, to = std::min(feet.size(), i + 3);
     std::vector<double> rows;
     for (std::size_t k = from; k < to; ++k) rows.push_back(feet[k].y);
-    const PixelPoint smooth{feet[i].x, median(rows)};
+    const PixelPoint smooth{feet[i].x, median(std::move(rows))};
     const auto point = view.optics->camera.floor_point(smooth);
     if (point && (!best || norm(*point) < best_range)) {
       best = smooth;
@@ -143,15 +139,6 @@ std::optional<PixelPoint> nearest_foot(const View& view, const std::vector<Stret
     }
   }
   return best;
-}
-
-/// Height above the floor of what shows at a pixel, if it stands at horizontal distance `range` from the eye. [m]
-std::optional<double> height_at(const MountedCamera& camera, PixelPoint pixel, double range) {
-  const auto ray = camera.ray(pixel);
-  if (!ray) return std::nullopt;
-  const double flat = std::hypot(ray->x, ray->y);
-  if (flat < 1e-6) return std::nullopt;
-  return camera.center().z + range * ray->z / flat;
 }
 
 std::optional<RobotOnFloor> on_floor(const View& view, const std::vector<Stretch>& parts, const RobotOptions& options) {
@@ -171,26 +158,21 @@ std::optional<RobotOnFloor> on_floor(const View& view, const std::vector<Stretch
   const double reach = options.bound_sigmas * options.foot_sigma_px;
   const auto nearer = camera.floor_point(*foot + PixelPoint{0, reach});
   const auto further = camera.floor_point(*foot - PixelPoint{0, reach});
-  robot.bounds.near = cut ? 0 : nearer ? std::min(range, norm(*nearer)) : range;
-  robot.bounds.far = further ? std::max(range, norm(*further)) : range;
+  // Where the lens shows no place nearer, or the horizon is near, there is no such bound.
+  robot.bounds.near = !cut && nearer ? std::min(range, norm(*nearer)) : 0;
+  robot.bounds.far = further ? std::max(range, norm(*further)) : std::numeric_limits<double>::infinity();
 
-  const double eye_range = distance(seen->mean, {camera.center().x, camera.center().y});
+  const double eye_range = distance(seen->mean, foot_of(camera));
   const auto left = camera.ray({parts.front().column - 0.5, foot->y});
   const auto right = camera.ray({parts.back().column + 0.5, foot->y});
   if (left && right) {
-    const double angle = std::acos(std::clamp(
-        (left->x * right->x + left->y * right->y) / (std::hypot(left->x, left->y) * std::hypot(right->x, right->y)),
-        -1.0, 1.0));
+    const double angle = std::abs(wrap_angle(std::atan2(left->y, left->x) - std::atan2(right->y, right->x)));
     robot.width = 2 * eye_range * std::tan(angle / 2);
   }
   // The middle lies half a width behind the nearest point, along the sight of the robot's middle.
   const double depth = std::clamp(robot.width, view.field.robots.width.low, view.field.robots.width.high) / 2;
-  const auto sight = camera.ray({(parts.front().column + parts.back().column) / 2.0, foot->y});
-  if (sight) {
-    const double flat = std::hypot(sight->x, sight->y);
-    const double along = eye_range + depth;
-    robot.center = {camera.center().x + along * sight->x / flat, camera.center().y + along * sight->y / flat};
-  }
+  const PixelPoint middle{(parts.front().column + parts.back().column) / 2.0, foot->y};
+  robot.center = floor_at_range(camera, middle, eye_range + depth).value_or(seen->mean);
   return robot;
 }
 
@@ -221,8 +203,8 @@ std::optional<RobotSeen> robot_of(const View& view, const std::vector<Stretch>& 
   robot.floor = on_floor(view, parts, options);
   if (!robot.floor) return std::nullopt;
   const MountedCamera& camera = view.optics->camera;
-  const double eye_range = distance(robot.floor->nearest.mean, {camera.center().x, camera.center().y});
-  const auto height = height_at(camera, {(robot.box.x0 + robot.box.x1) / 2.0, robot.box.y0 - 0.5}, eye_range);
+  const double eye_range = distance(robot.floor->nearest.mean, foot_of(camera));
+  const auto height = height_at_range(camera, {(robot.box.x0 + robot.box.x1) / 2.0, robot.box.y0 - 0.5}, eye_range);
   // Half of the least height allows for a far top that blends with what is behind it.
   if (!cut_above && height && *height < 0.5 * view.field.robots.height.low) return std::nullopt;
   if (robot.floor->width > 2.5 * view.field.robots.width.high) return std::nullopt;
@@ -303,8 +285,10 @@ std::vector<RobotSeen> find_robots(const View& view, const RobotOptions& options
   std::vector<RobotSeen> robots;
   for (const auto& chain : chains)
     if (auto robot = robot_of(view, chain, options)) robots.push_back(std::move(*robot));
+  robots = without_rims(view, std::move(robots), options);
+  // Chains begin from left to right; a robot that took over a rim may begin further left.
   std::ranges::stable_sort(robots, {}, [](const RobotSeen& robot) { return robot.box.x0; });
-  return without_rims(view, std::move(robots), options);
+  return robots;
 }
 
 }  // namespace tassilo

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+#include <random>
+
 #include "tassilo/base/error.h"
 #include "tassilo/detect/test_view.h"
 
@@ -64,6 +67,51 @@ TEST(FindRobots, WithoutMarkerItIsToldByItsSizeButNotFromBlackBoards) {
   EXPECT_LT(distance(robots[0].floor->center, {1.8, 0.1}), 0.12);
   seen.field.walls->color = "black";
   EXPECT_TRUE(find_robots(seen.view()).empty());
+}
+
+TEST(FindRobots, NearTheHorizonNothingBoundsThemFromAbove) {
+  World world;
+  world.wall_x = 12;
+  world.robots.push_back({.foot = {7.5, 2.3}, .radius = 0.25, .height = 0.8, .marker = test::kMagenta});
+  const Seen seen(test::cameras()[2], world);
+  const auto bounds = [&](double sigma) {
+    RobotOptions options;
+    options.foot_sigma_px = sigma;
+    const auto robots = find_robots(seen.view(), options);
+    return robots.size() == 1 ? robots[0].floor->bounds : DistanceBounds{-1, -1};
+  };
+  const DistanceBounds sure = bounds(0.1), unsure = bounds(4);
+  EXPECT_GT(sure.near, 6);
+  EXPECT_LT(sure.far, 10);
+  EXPECT_LT(unsure.near, sure.near);
+  EXPECT_EQ(unsure.far, std::numeric_limits<double>::infinity());
+}
+
+TEST(FindRobots, ComeFromLeftToRightWithFiniteValuesWithinTheirBounds) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> x(0.6, 4), bearing_tangent(-0.7, 0.7), radius(0.12, 0.3);
+  for (int trial = 0; trial < 12; ++trial) {
+    SCOPED_TRACE(trial);
+    World world;
+    for (int i = 0; i < 5; ++i) {
+      const double range = x(random);
+      world.robots.push_back({.foot = {range, range * bearing_tangent(random)},
+                              .radius = radius(random),
+                              .marker = i % 2 == 0 ? test::kCyan : test::kMagenta});
+    }
+    const Seen seen(test::cameras()[static_cast<std::size_t>(trial % 3)], world);
+    const auto robots = find_robots(seen.view());
+    EXPECT_FALSE(robots.empty());
+    EXPECT_TRUE(std::ranges::is_sorted(robots, {}, [](const RobotSeen& robot) { return robot.box.x0; }));
+    for (const RobotSeen& robot : robots) {
+      const RobotOnFloor& floor = robot.floor.value();
+      const double range = norm(floor.nearest.mean);
+      EXPECT_TRUE(std::isfinite(floor.width) && std::isfinite(norm(floor.center)));
+      EXPECT_LE(floor.bounds.near, range);
+      EXPECT_GE(floor.bounds.far, range);
+      EXPECT_GT(norm(floor.center), range);
+    }
+  }
 }
 
 TEST(FindRobots, WithoutCalibrationItTellsBoxAndTeam) {

@@ -12,10 +12,16 @@ namespace {
 
 Eigen::Vector3d eigen(RobotPoint p) { return {p.x, p.y, p.z}; }
 
+/// Unit vector across a direction, level: to the right as seen along it. Any level one where the direction is vertical.
+RobotPoint level_right(RobotPoint direction) {
+  const RobotPoint right = cross(direction, RobotPoint{0, 0, 1});
+  return norm(right) > 0 ? normalized(right) : RobotPoint{0, -1, 0};
+}
+
 /// Pixels per radian around a direction: the geometric mean of both axes of the image. [px/rad]
 double pixels_per_radian(const MountedCamera& camera, RobotPoint direction) {
   const RobotPoint unit = normalized(direction);
-  const RobotPoint side = normalized(cross(RobotPoint{0, 0, 1}, unit));
+  const RobotPoint side = -1 * level_right(unit);
   const RobotPoint up = cross(unit, side);
   constexpr double step = 1e-3;
   const auto center = camera.project(camera.center() + unit);
@@ -34,7 +40,7 @@ std::vector<OutlinePoint> outline(const MountedCamera& camera, const RestingSphe
   const double range = norm(sight);
   if (range <= sphere.radius) return points;
   const RobotPoint axis = (1 / range) * sight;
-  const RobotPoint right = normalized(cross(axis, RobotPoint{0, 0, 1}));
+  const RobotPoint right = level_right(axis);
   const RobotPoint up = cross(right, axis);
   const double sine = sphere.radius / range, cosine = std::sqrt(1 - sine * sine);
   for (int i = 0; i < count; ++i) {
@@ -124,10 +130,9 @@ std::optional<SphereFit> fit_resting_sphere(const MountedCamera& camera, std::sp
   fit.covariance = information.inverse();
   fit.rms_px = std::sqrt(r.squaredNorm() / static_cast<double>(n));
   fit.inlier_share = static_cast<double>((r.array().abs() <= 3 * sigma).count()) / static_cast<double>(n);
-  const RobotPoint sight = fit.sphere.center() - camera.center();
-  if (camera.optical_from_robot(sight).z <= 0 && !std::holds_alternative<Equidistant>(camera.model().distortion))
-    return std::nullopt;
-  if (!fit.covariance.allFinite()) return std::nullopt;
+  if (!camera.project(fit.sphere.center())) return std::nullopt;  // behind the camera
+  // Edges that leave a direction open have no covariance, but for rounding.
+  if (!fit.covariance.allFinite() || !(fit.covariance.diagonal().array() > 0).all()) return std::nullopt;
   return fit;
 }
 

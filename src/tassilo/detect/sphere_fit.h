@@ -18,21 +18,24 @@ struct RestingSphere {
   RobotPoint center() const { return {foot.x, foot.y, radius}; }
 };
 
-/// Points of the sphere's outline in the image, `count` of them, evenly around its axis of sight, counter-clockwise in
-/// the image; those that cannot show are left out. O(count).
+/// A place on a sphere's outline in the image.
 struct OutlinePoint {
-  PixelPoint at;
+  PixelPoint at;       ///< [px]
   PixelPoint outward;  ///< Unit vector across the outline, away from the ball.
 };
+/// `count` points of the outline, evenly around the axis of sight, from the right counter-clockwise as seen in an
+/// upright image; those that cannot show are left out, all of them when the eye is inside the sphere. O(count).
 std::vector<OutlinePoint> outline(const MountedCamera& camera, const RestingSphere& sphere, int count);
 
-/// Angular radius in the middle of the image of the sphere, and its projected centre.
+/// A sphere as a disc in the image.
 struct ProjectedDisc {
-  PixelPoint center;
-  double radius_px = 0;  ///< Mean over columns and rows. [px]
+  PixelPoint center;     ///< Where the sphere's centre shows. [px]
+  double radius_px = 0;  ///< Mean distance of the outline from it. [px]
 };
+/// Nothing when a part of the outline cannot show. O(1).
 std::optional<ProjectedDisc> project_disc(const MountedCamera& camera, const RestingSphere& sphere);
 
+/// What fit_resting_sphere found.
 struct SphereFit {
   RestingSphere sphere;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  ///< Of foot.x, foot.y, radius; from the edges alone.
@@ -47,8 +50,8 @@ struct SphereFitOptions {
 };
 
 /// Fits a sphere that rests on the floor to points on its outline, by Gauss-Newton on their distance from the outline
-/// with Huber weights; exact for every lens, for it compares angles between rays. Nothing when it does not converge in
-/// front of the camera.
+/// with Huber weights; exact for every lens, for it compares angles between rays. Nothing when it does not converge to
+/// a place that can show, or when the edges leave it open.
 ///
 /// edges    at least 3, pixels
 /// start    a rough position

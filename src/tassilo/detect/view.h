@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "tassilo/camera/ground_map.h"
 #include "tassilo/camera/mount.h"
 #include "tassilo/color/segment.h"
@@ -28,6 +30,7 @@ struct View {
   const Optics* optics = nullptr;  ///< Null without calibration.
 
   ColorClass color(int column, int row) const { return static_cast<ColorClass>(segmentation.label(column, row)); }
+  /// Is the pixel in the image?
   bool inside(int column, int row) const {
     return column >= 0 && row >= 0 && column < segmentation.width && row < segmentation.height;
   }
@@ -37,6 +40,21 @@ struct View {
 constexpr bool is_robot_color(ColorClass color) {
   return color == ColorClass::black || color == ColorClass::cyan || color == ColorClass::magenta;
 }
+
+/// Pixel that holds a place; nothing outside the image, however far. O(1).
+struct GridPoint {
+  int column = 0, row = 0;
+};
+std::optional<GridPoint> pixel_of(const View& view, PixelPoint place);
+
+/// Floor point below what shows at a pixel, if it stands at horizontal distance `range` from the eye; nothing where the
+/// pixel shows no direction, or looks straight up or down. [m]
+std::optional<FloorPoint> floor_at_range(const MountedCamera& camera, PixelPoint pixel, double range);
+/// Its height above the floor, likewise. [m]
+std::optional<double> height_at_range(const MountedCamera& camera, PixelPoint pixel, double range);
+
+/// Floor point below the camera. [m]
+inline FloorPoint foot_of(const MountedCamera& camera) { return {camera.center().x, camera.center().y}; }
 
 /// Furthest two places of a field may lie apart; what stands further off stands off the field. [m]
 double longest_distance(const FieldModel& field);
