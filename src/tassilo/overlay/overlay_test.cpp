@@ -11,9 +11,6 @@
 #include "tassilo/overlay/internal/label_layout.h"
 #include "tassilo/overlay/internal/text.h"
 
-/// For AddressSanitizer: fontconfig keeps what it read about fonts until the process ends.
-extern "C" const char* __lsan_default_suppressions() { return "leak:libfontconfig"; }
-
 namespace tassilo {
 namespace {
 
