@@ -4,67 +4,25 @@
 #include <benchmark/benchmark.h>
 
 #include <array>
-#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "support/recording.h"
 #include "tassilo/base/median.h"
-#include "tassilo/color/train.h"
-#include "tassilo/files/camera_file.h"
-#include "tassilo/files/field_file.h"
-#include "tassilo/files/robot_file.h"
-#include "tassilo/files/samples_file.h"
-#include "tassilo/region/raster.h"
-#include "tassilo/source/frame_source.h"
-#include "tassilo/vision/vision.h"
 
 namespace tassilo {
 namespace {
 
-const std::filesystem::path kData = TASSILO_SOURCE_DIR "/data/msl98";
-
-ColorTable trained(const std::string& samples_file) {
-  std::vector<ColorSample> samples;
-  ColorRange range = ColorRange::limited;
-  for (const TrainingSample& sample : read_samples(kData / samples_file)) {
-    SourceOptions options;
-    options.location = sample.image.string();
-    const Frame frame = read_frame(options, sample.frame);
-    range = frame.range;
-    Region region;
-    if (const auto* rectangle = std::get_if<PixelBox>(&sample.shape)) region = Region::from_box(*rectangle);
-    if (const auto* polygon = std::get_if<std::vector<PixelPoint>>(&sample.shape))
-      region = region_from_polygon(*polygon, {0, 0, frame.view.width(), frame.view.height()});
-    samples.push_back({sample.color, 0, pixels_of(frame.view, region)});
-  }
-  return train_colors(samples, range);
-}
-
-/// Frames in memory and everything that sees them.
-struct Recording {
-  Recording(const std::string& name, const std::string& samples) {
-    const RobotFile robot = read_robot(kData / name / "robot.yaml");
-    const CameraFile camera = read_camera(robot.camera.value());
-    setup.colors = trained(samples);
-    setup.field = read_field(robot.field.value());
-    setup.camera = camera.model;
-    setup.mount = camera.mount;
-    SourceOptions options;
-    options.location = (kData / name / "video.mkv").string();
-    FrameSource source = open_source(options);
-    while (auto frame = source.next()) frames.push_back(std::move(*frame));
-  }
-  VisionSetup setup;
-  std::vector<Frame> frames;
-};
+using test::Recording;
 
 const Recording& recording(int index) {
   static const std::array names{std::pair("d01_approach", "train_div/samples.yaml"),
                                 std::pair("d06_vga", "train_vga/samples.yaml")};
   static std::map<int, Recording> loaded;
   const auto& [name, samples] = names[static_cast<std::size_t>(index)];
-  return loaded.try_emplace(index, name, samples).first->second;
+  if (!loaded.contains(index)) loaded.emplace(index, test::load_recording(name, samples));
+  return loaded.at(index);
 }
 
 std::string size_label(const Frame& frame) {

@@ -19,7 +19,7 @@ namespace {
 using Pixels = std::set<std::pair<int, int>>;  // (row, column)
 
 Region next_region(Bytes& bytes, int most_runs, int extent) {
-  std::vector<PixelRun> runs;
+  RunVector runs;
   for (int n = bytes.below(most_runs + 1); n > 0; --n) {
     const int row = bytes.below(extent) - extent / 2, begin = bytes.below(extent) - extent / 2;
     runs.push_back({static_cast<std::int16_t>(row), static_cast<std::int16_t>(begin),
@@ -69,7 +69,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
 
   for (const Connectivity connectivity : {Connectivity::four, Connectivity::eight}) {
-    const std::vector<Region> parts = components(a, connectivity);
+    const RecycledVector<Region> parts = components(a, connectivity);
     expects(union_of(parts) == a, "components are all of the region");
     std::int64_t total = 0;
     for (const Region& part : parts) {

@@ -10,8 +10,8 @@ namespace tassilo {
 
 /// The middle value, the upper of the two middle ones where the number is even; ordered by `key`. There must be one
 /// value at least. O(n).
-template <class T, class Key = std::identity>
-T median(std::vector<T> values, Key key = {}) {
+template <class T, class Allocator, class Key = std::identity>
+T median(std::vector<T, Allocator> values, Key key = {}) {
   expects(!values.empty(), "median of one value or more");
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::ranges::nth_element(values, middle, {}, key);

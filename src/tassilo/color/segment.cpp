@@ -35,7 +35,7 @@ void Classifier::row(const YuvRow& row, std::span<std::uint8_t> labels) const {
 
 Segmentation segment(const FrameView& frame, const Classifier& classifier, Segmentation recycled) {
   expects(frame.width() <= 32767 && frame.height() <= 32767, "run coordinates fit 16 bit");
-  std::array<std::vector<PixelRun>, kColorClassCount> runs;
+  std::array<RunVector, kColorClassCount> runs;
   for (int k = 0; k < kColorClassCount; ++k) {
     runs[static_cast<std::size_t>(k)] = recycled.regions[static_cast<std::size_t>(k)].take_runs();
     runs[static_cast<std::size_t>(k)].clear();

@@ -65,7 +65,7 @@ Region cluster(const UvHistogram& h, const TrainingOptions& options) {
   Region opened = opening(closed, rectangle(options.opening_px, options.opening_px));
   // Few samples or a synthetic color can be one cell wide: better a thin cluster than none.
   if (weight(h, opened) < 0.5 * h.total) opened = closed;
-  std::vector<PixelRun> kept;
+  RunVector kept;
   for (const Region& part : components(opened))
     if (weight(h, part) >= options.min_cluster_share * h.total)
       kept.insert(kept.end(), part.runs().begin(), part.runs().end());

@@ -135,7 +135,7 @@ TEST(DistanceTo, EqualsBruteForce) {
   std::mt19937 random(7);
   std::uniform_int_distribution<int> at(0, 255);
   for (const int count : {0, 1, 2, 40}) {
-    std::vector<PixelRun> runs;
+    RunVector runs;
     for (int i = 0; i < count; ++i) {
       const int u = at(random);
       runs.push_back(

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tassilo/base/error.h"
+#include "tassilo/base/sort_stably.h"
 #include "tassilo/detect/edge.h"
 #include "tassilo/detect/sphere_fit.h"
 #include "tassilo/geometry/angle.h"
@@ -29,8 +30,8 @@ struct RimPoint {
 };
 
 /// Rim of a segment without what the image border cuts. O(pixels of the rim x log runs).
-std::vector<RimPoint> rim_of(const View& view, const Region& segment) {
-  std::vector<RimPoint> rim;
+RecycledVector<RimPoint> rim_of(const View& view, const Region& segment) {
+  RecycledVector<RimPoint> rim;
   const auto add = [&](int c, int r, int dc, int dr) {
     if (!view.inside(c + dc, r + dr)) return;
     // One pixel of mixed color may lie between ball and robot.
@@ -50,10 +51,10 @@ std::vector<RimPoint> rim_of(const View& view, const Region& segment) {
 }
 
 /// Enough of the rim for a first fit, evenly thinned.
-std::vector<PixelPoint> positions(const std::vector<RimPoint>& rim, bool with_hidden) {
+RecycledVector<PixelPoint> positions(const RecycledVector<RimPoint>& rim, bool with_hidden) {
   constexpr std::size_t enough = 64;
   const std::size_t step = std::max<std::size_t>(1, rim.size() / enough);
-  std::vector<PixelPoint> points;
+  RecycledVector<PixelPoint> points;
   for (std::size_t i = 0; i < rim.size(); i += step)
     if (with_hidden || !rim[i].hidden) points.push_back(rim[i].at);
   return points;
@@ -77,9 +78,9 @@ std::optional<RestingSphere> first_guess(const View& view, const MountedCamera& 
 }
 
 /// Sub-pixel edges along the outline of a sphere; left out: beyond the border and where a robot hides the rim.
-std::vector<PixelPoint> outline_edges(const View& view, const MountedCamera& camera, const RestingSphere& sphere,
-                                      bool with_hidden) {
-  std::vector<PixelPoint> edges;
+RecycledVector<PixelPoint> outline_edges(const View& view, const MountedCamera& camera, const RestingSphere& sphere,
+                                         bool with_hidden) {
+  RecycledVector<PixelPoint> edges;
   const auto disc = project_disc(camera, sphere);
   if (!disc) return edges;
   // Far enough for both plateaus, near enough to stay on the ball and beside it.
@@ -110,7 +111,7 @@ struct DiscView {
 
 DiscView look_at_disc(const View& view, const MountedCamera& camera, const RestingSphere& sphere) {
   DiscView look;
-  std::vector<PixelPoint> polygon;
+  RecycledVector<PixelPoint> polygon;
   for (const OutlinePoint& p : outline(camera, sphere, 48)) {
     polygon.push_back(p.at);
     if (p.outward.y < 0.5) continue;  // the lower third of the rim
@@ -210,7 +211,7 @@ bool has_plausible_size(const View& view, const MountedCamera& camera, const Pix
   return std::max(box.width(), box.height()) <= 2 * 1.7 * disc->radius_px + 4;
 }
 
-std::optional<SphereFit> fit_segment(const View& view, const Attempt& attempt, const std::vector<RimPoint>& rim,
+std::optional<SphereFit> fit_segment(const View& view, const Attempt& attempt, const RecycledVector<RimPoint>& rim,
                                      const PixelBox& box, const BallOptions& options) {
   const auto guess = first_guess(view, attempt.camera, box);
   if (!guess) return std::nullopt;
@@ -231,7 +232,7 @@ std::optional<SphereFit> fit_segment(const View& view, const Attempt& attempt, c
 }
 
 std::optional<Ball> try_ball(const View& view, const Attempt& attempt, const Region& segment,
-                             const std::vector<RimPoint>& rim, const BallOptions& options) {
+                             const RecycledVector<RimPoint>& rim, const BallOptions& options) {
   const PixelBox box = bounding_box(segment);
   const MountedCamera& camera = attempt.camera;
   const auto fit = fit_segment(view, attempt, rim, box, options);
@@ -299,7 +300,7 @@ bool may_stand(const View& view, const PixelBox& box) {
 std::optional<Ball> steady_ball(const View& view, const Region& segment, const BallOptions& options) {
   const MountedCamera& camera = view.optics->camera;
   if (!has_plausible_size(view, camera, bounding_box(segment))) return std::nullopt;
-  const std::vector<RimPoint> rim = rim_of(view, fill_holes(segment));
+  const RecycledVector<RimPoint> rim = rim_of(view, fill_holes(segment));
   const auto open = static_cast<std::size_t>(std::ranges::count(rim, false, &RimPoint::hidden));
   // A robot behind the ball looks like one before it: with hardly any open rim, every point of it is better than none.
   const bool hardly_open = open < std::max<std::size_t>(6, rim.size() / 4);
@@ -311,7 +312,7 @@ std::optional<Ball> steady_ball(const View& view, const Region& segment, const B
 /// With the robot nodding, the smallest angle that explains the segment.
 std::optional<Ball> nodding_ball(const View& view, std::span<const MountedCamera> nodding, const Region& segment,
                                  const BallOptions& options) {
-  std::vector<RimPoint> rim;
+  RecycledVector<RimPoint> rim;
   for (const MountedCamera& camera : nodding) {
     if (!has_plausible_size(view, camera, bounding_box(segment))) continue;
     if (rim.empty()) rim = rim_of(view, fill_holes(segment));
@@ -322,8 +323,8 @@ std::optional<Ball> nodding_ball(const View& view, std::span<const MountedCamera
 }
 
 /// The camera as it may look while the robot shakes, small angles first.
-std::vector<MountedCamera> nodding_cameras(const MountedCamera& camera, const BallOptions& options) {
-  std::vector<MountedCamera> cameras;
+RecycledVector<MountedCamera> nodding_cameras(const MountedCamera& camera, const BallOptions& options) {
+  RecycledVector<MountedCamera> cameras;
   for (double nod = options.nod_step_deg; nod <= options.max_nod_deg + 1e-9; nod += options.nod_step_deg)
     for (const double sign : {1.0, -1.0}) {
       CameraMount mount = camera.mount();
@@ -388,15 +389,15 @@ void BallOptions::check() const {
     throw Error("ball.max_nod_deg", "is " + std::to_string(max_nod_deg) + ", must be in [0, 10]");
 }
 
-std::vector<Ball> find_balls(const View& view, const BallOptions& options) {
+RecycledVector<Ball> find_balls(const View& view, const BallOptions& options) {
   // A line before or a highlight on the ball may split it by a pixel.
   const Region joined = closing(view.segmentation.of(ball_color(view.field)), rectangle(3, 3));
-  std::vector<Region> segments = components(joined);
+  RecycledVector<Region> segments = components(joined);
   std::erase_if(segments, [&](const Region& segment) {
     // One sample of chroma spans two columns: what is no wider is one sample's noise.
     return area(segment) < options.min_area_px || bounding_box(segment).width() < 3;
   });
-  std::vector<Ball> balls;
+  RecycledVector<Ball> balls;
   const auto collect = [&](auto look) {
     for (const Region& segment : segments)
       if (auto ball = look(segment)) balls.push_back(std::move(*ball));
@@ -408,13 +409,13 @@ std::vector<Ball> find_balls(const View& view, const BallOptions& options) {
     collect([&](const Region& segment) { return steady_ball(view, segment, options); });
     // A ball that fits the mount as calibrated says that the robot does not nod.
     if (balls.empty() && !segments.empty()) {
-      const std::vector<MountedCamera> nodding = nodding_cameras(view.optics->camera, options);
+      const RecycledVector<MountedCamera> nodding = nodding_cameras(view.optics->camera, options);
       collect([&](const Region& segment) { return nodding_ball(view, nodding, segment, options); });
     }
   }
-  std::ranges::stable_sort(balls, std::greater<>{}, &Ball::confidence);
+  sort_stably(balls, std::greater<>{}, &Ball::confidence);
   // Two pieces of one ball are one ball.
-  std::vector<Ball> kept;
+  RecycledVector<Ball> kept;
   for (Ball& ball : balls) {
     const bool same = std::ranges::any_of(kept, [&](const Ball& other) {
       return distance(other.center, ball.center) < std::max(other.radius_px, ball.radius_px);

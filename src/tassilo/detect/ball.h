@@ -1,7 +1,6 @@
 #pragma once
 
-#include <vector>
-
+#include "tassilo/base/recycled.h"
 #include "tassilo/detect/view.h"
 #include "tassilo/scene/scene.h"
 
@@ -36,6 +35,6 @@ struct BallOptions {
 /// ball is a round segment of the ball's color above carpet, or above nothing known.
 ///
 /// cost     O(pixels of the ball's color); safe from any thread. source: DESIGN 6.5 and 6.6, fit own
-std::vector<Ball> find_balls(const View& view, const BallOptions& options = {});
+RecycledVector<Ball> find_balls(const View& view, const BallOptions& options = {});
 
 }  // namespace tassilo

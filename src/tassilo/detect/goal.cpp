@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -9,6 +10,7 @@
 
 #include "tassilo/base/error.h"
 #include "tassilo/base/median.h"
+#include "tassilo/base/sort_stably.h"
 #include "tassilo/detect/edge.h"
 #include "tassilo/geometry/angle.h"
 #include "tassilo/region/algebra.h"
@@ -31,8 +33,8 @@ struct Piece {
 };
 
 /// Lowest row of the piece in every column of its box; -1 where the column is empty.
-std::vector<int> lowest_rows(const Piece& piece) {
-  std::vector<int> rows(static_cast<std::size_t>(piece.box.width()), -1);
+RecycledVector<int> lowest_rows(const Piece& piece) {
+  RecycledVector<int> rows(static_cast<std::size_t>(piece.box.width()), -1);
   for (const PixelRun& run : piece.region.runs())
     for (int c = run.begin; c < run.end; ++c) rows[static_cast<std::size_t>(c - piece.box.x0)] = run.row;
   return rows;
@@ -59,7 +61,7 @@ Piece piece_of(const View& view, Region region) {
   piece.box = bounding_box(region);
   piece.region = std::move(region);
   const auto rows = lowest_rows(piece);
-  std::vector<FloorPoint> feet;
+  RecycledVector<FloorPoint> feet;
   for (int c = piece.box.x0; c < piece.box.x1; ++c) {
     const int row = rows[static_cast<std::size_t>(c - piece.box.x0)];
     if (row < 0 || !view.inside(c, row + 1)) continue;
@@ -98,7 +100,7 @@ std::optional<End> end_of(const View& view, const Region& goal, int side, const 
   struct RowEnd {
     int row, column;
   };
-  std::vector<RowEnd> ends;  // outermost pixel of every row
+  RecycledVector<RowEnd> ends;  // outermost pixel of every row
   for (const PixelRun& run : goal.runs()) {
     const int column = side < 0 ? run.begin : run.end - 1;
     if (ends.empty() || ends.back().row != run.row)
@@ -107,7 +109,7 @@ std::optional<End> end_of(const View& view, const Region& goal, int side, const 
       ends.back().column = column;
   }
   if (ends.size() < 3) return std::nullopt;
-  std::vector<double> azimuths;
+  RecycledVector<double> azimuths;
   int hidden = 0, cut = 0;
   for (const RowEnd& end : ends) {
     const int beside = end.column + side;
@@ -137,8 +139,8 @@ std::optional<End> end_of(const View& view, const Region& goal, int side, const 
   std::ranges::sort(azimuths);
   const std::size_t n = azimuths.size();
   const auto half = static_cast<std::ptrdiff_t>((n + 1) / 2);
-  end.azimuth = wrap_angle(median(side < 0 ? std::vector(azimuths.end() - half, azimuths.end())
-                                           : std::vector(azimuths.begin(), azimuths.begin() + half)));
+  end.azimuth = wrap_angle(median(side < 0 ? RecycledVector<double>(azimuths.end() - half, azimuths.end())
+                                           : RecycledVector<double>(azimuths.begin(), azimuths.begin() + half)));
   end.sigma = options.edge_sigma_px / camera.model().fx;
   // The foot of the end: the lowest row whose outermost pixel lies at this azimuth and stands on the floor.
   for (auto it = ends.rbegin(); it != ends.rend(); ++it) {
@@ -176,22 +178,26 @@ std::optional<Mouth> fit_mouth(const View& view, const End& left, const End& rig
   const FloorPoint r = right.foot.value_or(along(right.azimuth, facing));
   if (distance(l, r) < 0.1 * width) return std::nullopt;
   Eigen::Vector3d state((l.x + r.x) / 2, (l.y + r.y) / 2, std::atan2(l.y - r.y, l.x - r.x));
-  const auto residuals = [&](const Eigen::Vector3d& s) {
-    std::vector<double> e;
+  // Up to two bearings, two feet and the direction.
+  using Residuals = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 5, 1>;
+  const auto residuals = [&](const Eigen::Vector3d& s) -> Residuals {
+    std::array<double, 5> e{};
+    Eigen::Index n = 0;
     for (const int side : {1, -1}) {
       const End& end = side > 0 ? left : right;
       const FloorPoint post{s[0] + side * width / 2 * std::cos(s[2]), s[1] + side * width / 2 * std::sin(s[2])};
       const FloorPoint seen = post - eye;
-      e.push_back(wrap_angle(std::atan2(seen.y, seen.x) - end.azimuth) / end.sigma);
-      if (end.foot) e.push_back((norm(seen) - distance(*end.foot, eye)) / end.foot_sigma);
+      e[static_cast<std::size_t>(n++)] = wrap_angle(std::atan2(seen.y, seen.x) - end.azimuth) / end.sigma;
+      if (end.foot) e[static_cast<std::size_t>(n++)] = (norm(seen) - distance(*end.foot, eye)) / end.foot_sigma;
     }
     // Without feet the mouth is taken to face us, within half a right angle.
-    e.push_back(wrap_angle(s[2] - std::atan2(s[1] - eye.y, s[0] - eye.x) - radians(90)) / radians(45));
-    return Eigen::Map<const Eigen::VectorXd>(e.data(), static_cast<Eigen::Index>(e.size())).eval();
+    e[static_cast<std::size_t>(n++)] =
+        wrap_angle(s[2] - std::atan2(s[1] - eye.y, s[0] - eye.x) - radians(90)) / radians(45);
+    return Eigen::Map<const Residuals>(e.data(), n);
   };
   for (int iteration = 0; iteration < 15; ++iteration) {
-    const Eigen::VectorXd e = residuals(state);
-    Eigen::MatrixX3d jacobian(e.size(), 3);
+    const Residuals e = residuals(state);
+    Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 5, 3> jacobian(e.size(), 3);
     for (int k = 0; k < 3; ++k) {
       Eigen::Vector3d moved = state;
       constexpr double step = 1e-6;
@@ -215,7 +221,7 @@ std::optional<Goal> goal_of(const View& view, GoalColor color, const FieldModel:
                             const GoalOptions& options) {
   const ColorClass color_class = color == GoalColor::yellow ? ColorClass::yellow : ColorClass::blue;
   const Region joined = closing(view.segmentation.of(color_class), rectangle(3, 3));
-  std::vector<Piece> standing, floating;
+  RecycledVector<Piece> standing, floating;
   for (Region& part : components(joined)) {
     if (area(part) < options.min_area_px) continue;
     Piece piece = piece_of(view, std::move(part));
@@ -227,15 +233,15 @@ std::optional<Goal> goal_of(const View& view, GoalColor color, const FieldModel:
   }
   if (standing.empty()) return std::nullopt;
   // The largest piece is the goal; others belong to it when together they are no wider than a goal.
-  std::ranges::stable_sort(standing, std::greater<>{}, [](const Piece& p) { return area(p.region); });
+  sort_stably(standing, std::greater<>{}, [](const Piece& p) { return area(p.region); });
   PixelBox box = standing.front().box;
-  std::vector<Region> parts{standing.front().region};
+  RecycledVector<Region> parts{standing.front().region};
   const auto widest_px = [&]() -> double {
     if (view.optics == nullptr) return 1.5 * box.width();
     const double range = std::max(0.3, distance(*standing.front().foot, foot_of(view.optics->camera)));
     return 1.3 * view.optics->camera.model().fx * model.width / range + 4;
   }();
-  const auto take = [&](const std::vector<Piece>& pieces, std::size_t from, bool must_overlap_rows) {
+  const auto take = [&](const RecycledVector<Piece>& pieces, std::size_t from, bool must_overlap_rows) {
     for (std::size_t i = from; i < pieces.size(); ++i) {
       const PixelBox both = hull(box, pieces[i].box);
       const bool rows = std::min(box.y1, pieces[i].box.y1) > std::max(box.y0, pieces[i].box.y0);
@@ -281,8 +287,8 @@ void GoalOptions::check() const {
   if (!(foot_sigma_px > 0)) throw Error("goal.foot_sigma_px", "is " + std::to_string(foot_sigma_px) + ", must be > 0");
 }
 
-std::vector<Goal> find_goals(const View& view, const GoalOptions& options) {
-  std::vector<Goal> goals;
+RecycledVector<Goal> find_goals(const View& view, const GoalOptions& options) {
+  RecycledVector<Goal> goals;
   for (const GoalColor color : {GoalColor::yellow, GoalColor::blue}) {
     const auto model = std::ranges::find(view.field.goals, color, &FieldModel::Goal::color);
     if (model == view.field.goals.end()) continue;

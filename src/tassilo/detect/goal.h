@@ -1,7 +1,6 @@
 #pragma once
 
-#include <vector>
-
+#include "tassilo/base/recycled.h"
 #include "tassilo/detect/view.h"
 #include "tassilo/scene/scene.h"
 
@@ -23,6 +22,6 @@ struct GoalOptions {
 /// fitted to their bearings and feet. Without calibration only boxes and colors are told.
 ///
 /// cost     O(pixels of the goal colors); safe from any thread. source: own
-std::vector<Goal> find_goals(const View& view, const GoalOptions& options = {});
+RecycledVector<Goal> find_goals(const View& view, const GoalOptions& options = {});
 
 }  // namespace tassilo

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "tassilo/base/error.h"
+#include "tassilo/base/sort_stably.h"
 #include "tassilo/geometry/angle.h"
 
 namespace tassilo {
@@ -37,26 +38,26 @@ std::optional<LinePoint> line_point(const View& view, PixelPoint pixel) {
 
 constexpr int kMostPoints = 300;  // more do not make a line more certain, only slower
 
-std::vector<PixelPoint> thinned(std::vector<PixelPoint> pixels) {
+RecycledVector<PixelPoint> thinned(RecycledVector<PixelPoint> pixels) {
   if (pixels.size() <= kMostPoints) return pixels;
-  std::vector<PixelPoint> kept;
+  RecycledVector<PixelPoint> kept;
   const double step = static_cast<double>(pixels.size()) / kMostPoints;
   for (double i = 0; i < static_cast<double>(pixels.size()); i += step)
     kept.push_back(pixels[static_cast<std::size_t>(i)]);
   return kept;
 }
 
-std::vector<LinePoint> on_floor(const View& view, const std::vector<PixelPoint>& pixels) {
-  std::vector<LinePoint> points;
+RecycledVector<LinePoint> on_floor(const View& view, const RecycledVector<PixelPoint>& pixels) {
+  RecycledVector<LinePoint> points;
   for (const PixelPoint& pixel : thinned(pixels))
     if (const auto point = line_point(view, pixel)) points.push_back(*point);
   return points;
 }
 
 /// Middles of the line stretches along rows or along columns, whichever is narrower there.
-std::vector<PixelPoint> line_middles(const View& view) {
+RecycledVector<PixelPoint> line_middles(const View& view) {
   const Surface& surface = view.surface;
-  std::vector<PixelPoint> middles;
+  RecycledVector<PixelPoint> middles;
   const auto is_line = [&](int c, int r) { return view.inside(c, r) && surface.at(c, r) == SurfaceKind::line; };
   const auto rows_from = [&](int c, int r, int step) {
     int n = 0;
@@ -86,8 +87,8 @@ std::vector<PixelPoint> line_middles(const View& view) {
 }
 
 /// Where, going up a column, carpet ends and a wall begins.
-std::vector<PixelPoint> wall_feet(const View& view) {
-  std::vector<PixelPoint> feet;
+RecycledVector<PixelPoint> wall_feet(const View& view) {
+  RecycledVector<PixelPoint> feet;
   const auto wall_color = view.field.walls ? color_class_from(view.field.walls->color) : std::nullopt;
   if (!wall_color) return feet;
   const bool white = *wall_color == ColorClass::white;
@@ -107,28 +108,29 @@ std::vector<PixelPoint> wall_feet(const View& view) {
 }
 
 /// Points whose rays lie in the plane through the eye with unit normal `normal`.
-std::vector<std::size_t> in_plane(const std::vector<LinePoint>& points, const Eigen::Vector3d& normal,
-                                  double tolerance) {
-  std::vector<std::size_t> inside;
+RecycledVector<std::size_t> in_plane(const RecycledVector<LinePoint>& points, const Eigen::Vector3d& normal,
+                                     double tolerance) {
+  RecycledVector<std::size_t> inside;
   for (std::size_t i = 0; i < points.size(); ++i)
     if (std::abs(normal.dot(points[i].ray)) <= tolerance) inside.push_back(i);
   return inside;
 }
 
 /// Total least squares plane through the eye. Unit normal.
-Eigen::Vector3d plane_through(const std::vector<LinePoint>& points, const std::vector<std::size_t>& chosen) {
+Eigen::Vector3d plane_through(const RecycledVector<LinePoint>& points, const RecycledVector<std::size_t>& chosen) {
   Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
   for (const std::size_t i : chosen) scatter += points[i].ray * points[i].ray.transpose();
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors().col(0);
 }
 
 struct Piece {
-  std::vector<std::size_t> points;  ///< Ordered along the line.
-  double length = 0;                ///< [m]
+  RecycledVector<std::size_t> points;  ///< Ordered along the line.
+  double length = 0;                   ///< [m]
 };
 
 /// The longest piece of the points without a gap, ordered along their line on the floor.
-Piece longest_piece(const std::vector<LinePoint>& points, std::vector<std::size_t> chosen, const LineOptions& options) {
+Piece longest_piece(const RecycledVector<LinePoint>& points, RecycledVector<std::size_t> chosen,
+                    const LineOptions& options) {
   Piece best;
   if (chosen.size() < 2) return best;
   const auto extent = [&](auto coordinate) {
@@ -167,13 +169,13 @@ std::optional<FloorPoint> on_plane_and_floor(const View& view, const LinePoint& 
   return FloorPoint{eye.x + along * ray.x(), eye.y + along * ray.y()};
 }
 
-void find_straight(const View& view, std::vector<LinePoint> points, LineKind kind, const LineOptions& options,
-                   std::vector<LineSeen>& out) {
+void find_straight(const View& view, RecycledVector<LinePoint> points, LineKind kind, const LineOptions& options,
+                   RecycledVector<LineSeen>& out) {
   constexpr int trials = 60;
   const double tolerance =
       options.tolerance_px / std::sqrt(view.optics->camera.model().fx * view.optics->camera.model().fy);
   std::mt19937 random(1);  // the same frame gives the same lines
-  std::vector<std::pair<double, LineSeen>> found;
+  RecycledVector<std::pair<double, LineSeen>> found;
   while (points.size() >= static_cast<std::size_t>(options.min_points) &&
          found.size() < static_cast<std::size_t>(options.max_lines)) {
     std::uniform_int_distribution<std::size_t> any(0, points.size() - 1);
@@ -208,7 +210,7 @@ void find_straight(const View& view, std::vector<LinePoint> points, LineKind kin
       found.emplace_back(distance(*p, *q), std::move(line));
     }
     // What lies on the line, or on its rim, is explained.
-    std::vector<bool> used(points.size(), false);
+    RecycledVector<bool> used(points.size(), false);
     const auto [low_x, high_x] = std::ranges::minmax(first.floor.x, last.floor.x);
     const auto [low_y, high_y] = std::ranges::minmax(first.floor.y, last.floor.y);
     constexpr double rim = 0.05;  // [m]
@@ -222,7 +224,7 @@ void find_straight(const View& view, std::vector<LinePoint> points, LineKind kin
       if (!used[i]) points[kept++] = points[i];
     points.resize(kept);
   }
-  std::ranges::stable_sort(found, std::greater<>{}, &std::pair<double, LineSeen>::first);
+  sort_stably(found, std::greater<>{}, &std::pair<double, LineSeen>::first);
   for (auto& [length, line] : found) out.push_back(std::move(line));
 }
 
@@ -244,7 +246,7 @@ bool on_circle(const LinePoint& p, FloorPoint center, double radius, double tole
 
 /// Enough of the circle must show, and most of what should show must: corners and straight lines touch a circle, too,
 /// but where it would go on there is carpet.
-bool is_supported(const View& view, const std::vector<LinePoint>& points, FloorPoint center,
+bool is_supported(const View& view, const RecycledVector<LinePoint>& points, FloorPoint center,
                   const LineOptions& options) {
   constexpr int bins = 36;
   const double radius = view.field.circle_radius;
@@ -277,7 +279,7 @@ bool is_supported(const View& view, const std::vector<LinePoint>& points, FloorP
 }
 
 /// The centre circle of known radius; takes its points away.
-std::optional<CircleSeen> find_circle(const View& view, std::vector<LinePoint>& points, const LineOptions& options) {
+std::optional<CircleSeen> find_circle(const View& view, RecycledVector<LinePoint>& points, const LineOptions& options) {
   const double radius = view.field.circle_radius;
   if (radius <= 0 || points.size() < static_cast<std::size_t>(2 * options.min_points)) return std::nullopt;
   constexpr int trials = 100;
@@ -348,7 +350,7 @@ Lines find_lines(const View& view, const LineOptions& options) {
   Lines lines;
   if (view.optics == nullptr) return lines;
   find_straight(view, on_floor(view, wall_feet(view)), LineKind::boundary, options, lines.lines);
-  std::vector<LinePoint> points = on_floor(view, line_middles(view));
+  RecycledVector<LinePoint> points = on_floor(view, line_middles(view));
   if (const auto circle = find_circle(view, points, options)) lines.circles.push_back(*circle);
   find_straight(view, std::move(points), LineKind::line, options, lines.lines);
   return lines;

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <vector>
-
+#include "tassilo/base/recycled.h"
 #include "tassilo/detect/view.h"
 #include "tassilo/scene/scene.h"
 
@@ -18,8 +17,8 @@ struct LineOptions {
 };
 
 struct Lines {
-  std::vector<LineSeen> lines;      ///< Longest on the floor first within each kind, boundary before line.
-  std::vector<CircleSeen> circles;  ///< At most one.
+  RecycledVector<LineSeen> lines;      ///< Longest on the floor first within each kind, boundary before line.
+  RecycledVector<CircleSeen> circles;  ///< At most one.
 };
 
 /// Field lines, the field's boundary where carpet meets a wall, and the centre circle; nothing without calibration.

@@ -9,6 +9,7 @@
 
 #include "tassilo/base/error.h"
 #include "tassilo/base/median.h"
+#include "tassilo/base/sort_stably.h"
 #include "tassilo/detect/edge.h"
 #include "tassilo/geometry/angle.h"
 
@@ -71,7 +72,7 @@ void place_foot(const View& view, Stretch& stretch) {
 }
 
 /// All stretches of one column that are high enough, from the bottom up.
-void stretches_of(const View& view, int column, const RobotOptions& options, std::vector<Stretch>& out) {
+void stretches_of(const View& view, int column, const RobotOptions& options, RecycledVector<Stretch>& out) {
   int r = view.segmentation.height - 1;
   while (r >= 0) {
     if (!is_robot_color(view.color(column, r))) {
@@ -118,8 +119,8 @@ bool belong_together(const View& view, const Stretch& a, const Stretch& b, const
 }
 
 /// Outline point nearest to us, from feet smoothed over neighboring columns; nothing when no foot is seen.
-std::optional<PixelPoint> nearest_foot(const View& view, const std::vector<Stretch>& parts) {
-  std::vector<PixelPoint> feet;
+std::optional<PixelPoint> nearest_foot(const View& view, const RecycledVector<Stretch>& parts) {
+  RecycledVector<PixelPoint> feet;
   for (const Stretch& part : parts)
     if (part.under == Under::floor) feet.push_back({static_cast<double>(part.column), part.foot_row});
   if (feet.empty()) return std::nullopt;
@@ -129,7 +130,7 @@ std::optional<PixelPoint> nearest_foot(const View& view, const std::vector<Stret
   double best_range = 0;
   for (std::size_t i = skip; i + skip < feet.size(); ++i) {
     const std::size_t from = i >= 2 ? i - 2 : 0, to = std::min(feet.size(), i + 3);
-    std::vector<double> rows;
+    RecycledVector<double> rows;
     for (std::size_t k = from; k < to; ++k) rows.push_back(feet[k].y);
     const PixelPoint smooth{feet[i].x, median(std::move(rows))};
     const auto point = view.optics->camera.floor_point(smooth);
@@ -141,7 +142,8 @@ std::optional<PixelPoint> nearest_foot(const View& view, const std::vector<Stret
   return best;
 }
 
-std::optional<RobotOnFloor> on_floor(const View& view, const std::vector<Stretch>& parts, const RobotOptions& options) {
+std::optional<RobotOnFloor> on_floor(const View& view, const RecycledVector<Stretch>& parts,
+                                     const RobotOptions& options) {
   const MountedCamera& camera = view.optics->camera;
   auto foot = nearest_foot(view, parts);
   const bool cut = !foot;
@@ -176,7 +178,7 @@ std::optional<RobotOnFloor> on_floor(const View& view, const std::vector<Stretch
   return robot;
 }
 
-std::optional<RobotSeen> robot_of(const View& view, const std::vector<Stretch>& parts, const RobotOptions& options) {
+std::optional<RobotSeen> robot_of(const View& view, const RecycledVector<Stretch>& parts, const RobotOptions& options) {
   if (static_cast<int>(parts.size()) < options.min_columns) return std::nullopt;
   std::array<int, 2> marker{};
   int black = 0, border = 0;
@@ -226,15 +228,16 @@ bool is_rim_of(const View& view, const RobotSeen& rim, const RobotSeen& robot, c
 }
 
 /// Rims join the robot they belong to.
-std::vector<RobotSeen> without_rims(const View& view, std::vector<RobotSeen> robots, const RobotOptions& options) {
-  std::vector<bool> gone(robots.size(), false);
+RecycledVector<RobotSeen> without_rims(const View& view, RecycledVector<RobotSeen> robots,
+                                       const RobotOptions& options) {
+  RecycledVector<bool> gone(robots.size(), false);
   for (std::size_t i = 0; i < robots.size(); ++i)
     for (std::size_t k = 0; k < robots.size() && !gone[i]; ++k)
       if (k != i && !gone[k] && is_rim_of(view, robots[i], robots[k], options)) {
         robots[k].box = hull(robots[k].box, robots[i].box);
         gone[i] = true;
       }
-  std::vector<RobotSeen> kept;
+  RecycledVector<RobotSeen> kept;
   for (std::size_t i = 0; i < robots.size(); ++i)
     if (!gone[i]) kept.push_back(std::move(robots[i]));
   return kept;
@@ -256,10 +259,10 @@ void RobotOptions::check() const {
   least("bound_sigmas", bound_sigmas, 0, true);
 }
 
-std::vector<RobotSeen> find_robots(const View& view, const RobotOptions& options) {
-  std::vector<std::vector<Stretch>> chains;
-  std::vector<std::size_t> open;  // chains that may still grow
-  std::vector<Stretch> column;
+RecycledVector<RobotSeen> find_robots(const View& view, const RobotOptions& options) {
+  RecycledVector<RecycledVector<Stretch>> chains;
+  RecycledVector<std::size_t> open;  // chains that may still grow
+  RecycledVector<Stretch> column;
   for (int c = 0; c < view.segmentation.width; ++c) {
     column.clear();
     stretches_of(view, c, options, column);
@@ -282,12 +285,12 @@ std::vector<RobotSeen> find_robots(const View& view, const RobotOptions& options
       }
     }
   }
-  std::vector<RobotSeen> robots;
+  RecycledVector<RobotSeen> robots;
   for (const auto& chain : chains)
     if (auto robot = robot_of(view, chain, options)) robots.push_back(std::move(*robot));
   robots = without_rims(view, std::move(robots), options);
   // Chains begin from left to right; a robot that took over a rim may begin further left.
-  std::ranges::stable_sort(robots, {}, [](const RobotSeen& robot) { return robot.box.x0; });
+  sort_stably(robots, {}, [](const RobotSeen& robot) { return robot.box.x0; });
   return robots;
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <vector>
-
+#include "tassilo/base/recycled.h"
 #include "tassilo/detect/view.h"
 #include "tassilo/scene/scene.h"
 
@@ -24,6 +23,6 @@ struct RobotOptions {
 /// pixels, and only boxes and teams are told.
 ///
 /// cost     O(pixels); safe from any thread. source: own
-std::vector<RobotSeen> find_robots(const View& view, const RobotOptions& options = {});
+RecycledVector<RobotSeen> find_robots(const View& view, const RobotOptions& options = {});
 
 }  // namespace tassilo

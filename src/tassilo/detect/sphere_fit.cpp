@@ -10,6 +10,12 @@
 namespace tassilo {
 namespace {
 
+/// Distance of a ray from the outline, and its derivative by (x, y, radius). [px]
+struct Residual {
+  double value = 0;
+  Eigen::Vector3d by_state = Eigen::Vector3d::Zero();
+};
+
 Eigen::Vector3d eigen(RobotPoint p) { return {p.x, p.y, p.z}; }
 
 /// Unit vector across a direction, level: to the right as seen along it. Any level one where the direction is vertical.
@@ -34,8 +40,8 @@ double pixels_per_radian(const MountedCamera& camera, RobotPoint direction) {
 
 }  // namespace
 
-std::vector<OutlinePoint> outline(const MountedCamera& camera, const RestingSphere& sphere, int count) {
-  std::vector<OutlinePoint> points;
+RecycledVector<OutlinePoint> outline(const MountedCamera& camera, const RestingSphere& sphere, int count) {
+  RecycledVector<OutlinePoint> points;
   const RobotPoint sight = sphere.center() - camera.center();
   const double range = norm(sight);
   if (range <= sphere.radius) return points;
@@ -67,7 +73,7 @@ std::optional<ProjectedDisc> project_disc(const MountedCamera& camera, const Res
 std::optional<SphereFit> fit_resting_sphere(const MountedCamera& camera, std::span<const PixelPoint> edges,
                                             const RestingSphere& start, const SphereFitOptions& options) {
   expects(edges.size() >= 3, "three edges or more");
-  std::vector<Eigen::Vector3d> rays;
+  RecycledVector<Eigen::Vector3d> rays;
   for (const PixelPoint& edge : edges)
     if (const auto ray = camera.ray(edge)) rays.push_back(eigen(*ray));
   if (rays.size() < 3) return std::nullopt;
@@ -77,8 +83,7 @@ std::optional<SphereFit> fit_resting_sphere(const MountedCamera& camera, std::sp
   const double radius_sigma = std::max(1e-4, (options.radius.high - options.radius.low) / std::sqrt(12.0));
   Eigen::Vector3d state(start.foot.x, start.foot.y, options.radius.middle());
 
-  /// Distance of every ray from the outline, and its derivative by (x, y, radius). [px]
-  const auto residuals = [&](const Eigen::Vector3d& s, Eigen::VectorXd& r, Eigen::MatrixX3d* jacobian) {
+  const auto residuals = [&](const Eigen::Vector3d& s, RecycledVector<Residual>& out) {
     const Eigen::Vector3d sight = Eigen::Vector3d(s[0], s[1], s[2]) - eye;
     const double range = sight.norm();
     if (!(range > 1.05 * s[2])) return false;
@@ -86,31 +91,26 @@ std::optional<SphereFit> fit_resting_sphere(const MountedCamera& camera, std::sp
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const double cosine = std::clamp(rays[i].dot(sight) / range, -1.0, 1.0);
       const double across = std::sqrt(std::max(1e-12, 1 - cosine * cosine));
-      const auto k = static_cast<Eigen::Index>(i);
-      r[k] = px_per_rad * (std::acos(cosine) - radius_angle);
-      if (jacobian == nullptr) continue;
+      out[i].value = px_per_rad * (std::acos(cosine) - radius_angle);
       const Eigen::Vector3d by_center =
           -(rays[i] - cosine * sight / range) / (range * across) + (sine / (width * range)) * (sight / range);
       // The centre rises with the radius.
-      jacobian->row(k) =
-          px_per_rad * Eigen::RowVector3d(by_center[0], by_center[1], by_center[2] - 1 / (width * range));
+      out[i].by_state = px_per_rad * Eigen::Vector3d(by_center[0], by_center[1], by_center[2] - 1 / (width * range));
     }
     return true;
   };
 
-  const auto n = static_cast<Eigen::Index>(rays.size());
-  Eigen::VectorXd r(n);
-  Eigen::MatrixX3d jacobian(n, 3);
+  RecycledVector<Residual> r(rays.size());
   const double sigma = options.edge_sigma_px, huber = 2 * sigma;
   Eigen::Matrix3d information = Eigen::Matrix3d::Identity();
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
-    if (!residuals(state, r, &jacobian)) return std::nullopt;
+    if (!residuals(state, r)) return std::nullopt;
     information.setZero();
     Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const double weight = (std::abs(r[i]) <= huber ? 1 : huber / std::abs(r[i])) / (sigma * sigma);
-      information += weight * jacobian.row(i).transpose() * jacobian.row(i);
-      gradient += weight * r[i] * jacobian.row(i).transpose();
+    for (const auto& [value, by_state] : r) {
+      const double weight = (std::abs(value) <= huber ? 1 : huber / std::abs(value)) / (sigma * sigma);
+      information += weight * by_state * by_state.transpose();
+      gradient += weight * value * by_state;
     }
     information(2, 2) += 1 / (radius_sigma * radius_sigma);
     gradient[2] += (state[2] - options.radius.middle()) / (radius_sigma * radius_sigma);
@@ -124,12 +124,18 @@ std::optional<SphereFit> fit_resting_sphere(const MountedCamera& camera, std::sp
     state[2] = std::clamp(state[2], options.radius.low, options.radius.high);
     if (length < 1e-4) break;  // a tenth of a millimeter
   }
-  if (!residuals(state, r, nullptr)) return std::nullopt;
+  if (!residuals(state, r)) return std::nullopt;
   SphereFit fit;
   fit.sphere = {{state[0], state[1]}, state[2]};
   fit.covariance = information.inverse();
-  fit.rms_px = std::sqrt(r.squaredNorm() / static_cast<double>(n));
-  fit.inlier_share = static_cast<double>((r.array().abs() <= 3 * sigma).count()) / static_cast<double>(n);
+  double squares = 0;
+  std::ptrdiff_t inliers = 0;
+  for (const Residual& residual : r) {
+    squares += residual.value * residual.value;
+    inliers += std::abs(residual.value) <= 3 * sigma;
+  }
+  fit.rms_px = std::sqrt(squares / static_cast<double>(r.size()));
+  fit.inlier_share = static_cast<double>(inliers) / static_cast<double>(r.size());
   if (!camera.project(fit.sphere.center())) return std::nullopt;  // behind the camera
   // Edges that leave a direction open have no covariance, but for rounding.
   if (!fit.covariance.allFinite() || !(fit.covariance.diagonal().array() > 0).all()) return std::nullopt;

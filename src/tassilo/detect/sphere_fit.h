@@ -2,8 +2,8 @@
 
 #include <optional>
 #include <span>
-#include <vector>
 
+#include "tassilo/base/recycled.h"
 #include "tassilo/camera/mount.h"
 #include "tassilo/field/field_model.h"
 #include "tassilo/geometry/point.h"
@@ -25,7 +25,7 @@ struct OutlinePoint {
 };
 /// `count` points of the outline, evenly around the axis of sight, from the right counter-clockwise as seen in an
 /// upright image; those that cannot show are left out, all of them when the eye is inside the sphere. O(count).
-std::vector<OutlinePoint> outline(const MountedCamera& camera, const RestingSphere& sphere, int count);
+RecycledVector<OutlinePoint> outline(const MountedCamera& camera, const RestingSphere& sphere, int count);
 
 /// A sphere as a disc in the image.
 struct ProjectedDisc {

@@ -127,7 +127,7 @@ Json json_of(const std::optional<FreeSpace>& space) {
 }
 
 template <class T>
-Json list_of(const std::vector<T>& values) {
+Json list_of(const RecycledVector<T>& values) {
   Json list = Json::array();
   for (const T& value : values) list.push_back(json_of(value));
   return list;

@@ -110,7 +110,7 @@ SectorMap::SectorMap(const MountedCamera& camera, const FreeSpaceOptions& option
   const auto count = static_cast<int>(std::floor(2 * std::numbers::pi / angle_increment_ + 1e-9));
   const int lowest = static_cast<int>(std::lround(camera.mount().yaw / angle_increment_)) - count / 2;
   int first = count, last = -1;
-  std::vector<std::vector<Ray>> all(static_cast<std::size_t>(count));
+  RecycledVector<RecycledVector<Ray>> all(static_cast<std::size_t>(count));
   for (int k = 0; k < count; ++k) {
     auto& rays = all[static_cast<std::size_t>(k)];
     bool seen = false;

@@ -2,8 +2,8 @@
 
 #include <array>
 #include <span>
-#include <vector>
 
+#include "tassilo/base/recycled.h"
 #include "tassilo/camera/mount.h"
 #include "tassilo/scene/scene.h"
 #include "tassilo/surface/surface.h"
@@ -33,7 +33,7 @@ class SectorMap {
     float range;
   };
   struct Ray {
-    std::vector<Step> steps;  ///< Empty where no floor of this direction is in view.
+    RecycledVector<Step> steps;  ///< Empty where no floor of this direction is in view.
   };
 
   const FreeSpaceOptions& options() const { return options_; }
@@ -50,7 +50,7 @@ class SectorMap {
   FreeSpaceOptions options_;
   FloorPoint origin_;
   double angle_min_ = 0, angle_increment_ = 0;
-  std::vector<Ray> rays_;
+  RecycledVector<Ray> rays_;
 };
 
 /// Free motion space around the floor point under the camera (DESIGN 5 and 6.7).

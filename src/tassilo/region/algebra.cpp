@@ -16,7 +16,7 @@ namespace {
 template <class Keep>
 Region combined(const Region& first, const Region& second, Keep keep) {
   const auto a = first.runs(), b = second.runs();
-  std::vector<PixelRun> runs;
+  RunVector runs;
   runs.reserve(a.size() + b.size());
   const auto append = [&](std::span<const PixelRun> row) { runs.insert(runs.end(), row.begin(), row.end()); };
   std::size_t ia = 0, ib = 0;
@@ -100,7 +100,7 @@ Region symmetric_difference(const Region& a, const Region& b) {
 Region complement(const Region& region, const PixelBox& domain) { return difference(Region::from_box(domain), region); }
 
 Region translated(const Region& region, PixelShift shift) {
-  std::vector<PixelRun> runs;
+  RunVector runs;
   runs.reserve(region.runs().size());
   for (const PixelRun& run : region.runs())
     runs.push_back({to_coordinate(run.row + shift.rows), to_coordinate(run.begin + shift.columns),
@@ -112,7 +112,7 @@ Region clipped(const Region& region, const PixelBox& box) {
   if (box.empty()) return {};
   const auto all = region.runs();
   const auto first = std::ranges::lower_bound(all, box.y0, {}, [](const PixelRun& run) { return int{run.row}; });
-  std::vector<PixelRun> runs;
+  RunVector runs;
   for (auto run = first; run != all.end() && run->row < box.y1; ++run) {
     const int begin = std::max<int>(run->begin, box.x0), end = std::min<int>(run->end, box.x1);
     if (begin < end) runs.push_back({run->row, static_cast<std::int16_t>(begin), static_cast<std::int16_t>(end)});
@@ -126,7 +126,7 @@ Region transposed(const Region& region) {
   // Seen by column, the k-th beginning belongs to the k-th ending, as both lists come by rising row.
   const auto all = region.runs();
   const PixelBox box = bounding_box(region);
-  std::vector<std::size_t> place(static_cast<std::size_t>(box.width()) + 1, 0);
+  RecycledVector<std::size_t> place(static_cast<std::size_t>(box.width()) + 1, 0);
   const auto missing_neighbors = [&](int rows, auto use) {
     // The neighbor's rows are compared as plain numbers: a shifted copy might leave 16 bit.
     for (std::size_t i = 0, j = 0; i < all.size();) {
@@ -146,8 +146,8 @@ Region transposed(const Region& region) {
   };
   missing_neighbors(-1, [&](std::size_t column, std::int16_t) { ++place[column + 1]; });
   for (std::size_t c = 1; c < place.size(); ++c) place[c] += place[c - 1];
-  std::vector<PixelRun> runs(place.back());
-  std::vector<std::size_t> next = place;
+  RunVector runs(place.back());
+  RecycledVector<std::size_t> next = place;
   missing_neighbors(-1, [&](std::size_t column, std::int16_t row) {
     runs[next[column]++] = {to_coordinate(static_cast<int>(column) + box.x0), row, 0};
   });
@@ -159,7 +159,7 @@ Region transposed(const Region& region) {
 
 Region reflected(const Region& region) {
   const auto all = region.runs();
-  std::vector<PixelRun> runs;
+  RunVector runs;
   runs.reserve(all.size());
   for (auto run = all.rbegin(); run != all.rend(); ++run)
     runs.push_back({to_coordinate(-run->row), to_coordinate(1 - run->end), to_coordinate(1 - run->begin)});

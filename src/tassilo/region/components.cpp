@@ -30,7 +30,7 @@ class LabelSets {
     return std::min(a, b);
   }
   /// Numbers the sets 0, 1, ... by their smallest label; ends the use of all else. Returns the final number by label.
-  std::vector<int> numbered(int& count) && {
+  RecycledVector<int> numbered(int& count) && {
     count = 0;
     // Parents are never larger than their children, so a parent's final number is known before it is needed.
     for (std::size_t label = 0; label < parent_.size(); ++label)
@@ -41,7 +41,7 @@ class LabelSets {
  private:
   int& parent(int label) { return parent_[static_cast<std::size_t>(label)]; }
 
-  std::vector<int> parent_;
+  RecycledVector<int> parent_;
 };
 
 }  // namespace
@@ -65,22 +65,22 @@ RunLabels label_runs(const Region& region, Connectivity connectivity) {
     // The last one may reach on to the next run of this row.
     if (touching > above) above = touching - 1;
   }
-  const std::vector<int> number = std::move(sets).numbered(labels.count);
+  const RecycledVector<int> number = std::move(sets).numbered(labels.count);
   for (int& label : labels.label) label = number[static_cast<std::size_t>(label)];
   return labels;
 }
 
-std::vector<Region> components(const Region& region, Connectivity connectivity) {
+RecycledVector<Region> components(const Region& region, Connectivity connectivity) {
   const RunLabels labels = label_runs(region, connectivity);
   const auto runs = region.runs();
-  std::vector<std::size_t> sizes(static_cast<std::size_t>(labels.count), 0);
+  RecycledVector<std::size_t> sizes(static_cast<std::size_t>(labels.count), 0);
   for (const int label : labels.label) ++sizes[static_cast<std::size_t>(label)];
-  std::vector<std::vector<PixelRun>> parts(sizes.size());
+  RecycledVector<RunVector> parts(sizes.size());
   for (std::size_t k = 0; k < parts.size(); ++k) parts[k].reserve(sizes[k]);
   for (std::size_t i = 0; i < runs.size(); ++i) parts[static_cast<std::size_t>(labels.label[i])].push_back(runs[i]);
-  std::vector<Region> result;
+  RecycledVector<Region> result;
   result.reserve(parts.size());
-  for (std::vector<PixelRun>& part : parts) result.push_back(Region::from_sorted(std::move(part)));
+  for (RunVector& part : parts) result.push_back(Region::from_sorted(std::move(part)));
   return result;
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <vector>
-
+#include "tassilo/base/recycled.h"
 #include "tassilo/region/region.h"
 
 namespace tassilo {
@@ -16,8 +15,8 @@ constexpr Connectivity dual(Connectivity connectivity) {
 
 /// To which component each run of a region belongs.
 struct RunLabels {
-  std::vector<int> label;  ///< One per run of the region, 0 .. count - 1.
-  int count = 0;           ///< Number of components.
+  RecycledVector<int> label;  ///< One per run of the region, 0 .. count - 1.
+  int count = 0;              ///< Number of components.
 };
 
 /// Labels connected runs; components are numbered by their first run in the region's order.
@@ -28,6 +27,6 @@ RunLabels label_runs(const Region& region, Connectivity connectivity = Connectiv
 
 /// The connected components, each as a region, in the order of their first runs; every run is in exactly one.
 /// None for the empty region. HALCON `connection`. Cost as `label_runs`, and one allocation a component.
-std::vector<Region> components(const Region& region, Connectivity connectivity = Connectivity::eight);
+RecycledVector<Region> components(const Region& region, Connectivity connectivity = Connectivity::eight);
 
 }  // namespace tassilo

@@ -14,15 +14,15 @@ namespace tassilo {
 namespace {
 
 /// Flood fill from each pixel not yet seen, in the order of rows and columns.
-std::vector<Region> components_by_pixel(const Region& region, Connectivity connectivity) {
+RecycledVector<Region> components_by_pixel(const Region& region, Connectivity connectivity) {
   std::set<std::pair<int, int>> left;
   for (const PixelRun& run : region.runs())
     for (int c = run.begin; c < run.end; ++c) left.insert({run.row, c});
-  std::vector<Region> result;
+  RecycledVector<Region> result;
   while (!left.empty()) {
     std::vector<std::pair<int, int>> open{*left.begin()};
     left.erase(left.begin());
-    std::vector<PixelRun> runs;
+    RunVector runs;
     while (!open.empty()) {
       const auto [row, column] = open.back();
       open.pop_back();
@@ -53,7 +53,7 @@ TEST(Components, KeepEveryPixelOnce) {
     SCOPED_TRACE(seed);
     const Region region = random_case(seed).region;
     for (const Connectivity connectivity : {Connectivity::four, Connectivity::eight}) {
-      const std::vector<Region> parts = components(region, connectivity);
+      const RecycledVector<Region> parts = components(region, connectivity);
       std::int64_t sum = 0;
       for (const Region& part : parts) {
         sum += area(part);
@@ -67,12 +67,12 @@ TEST(Components, KeepEveryPixelOnce) {
 
 TEST(Components, NestedSpiralsJoinLate) {
   // A comb whose teeth meet in the last row only, and one that meets in the first row only.
-  std::vector<PixelRun> teeth;
+  RunVector teeth;
   for (std::int16_t row = 0; row < 5; ++row)
     for (std::int16_t c = 0; c < 40; c = static_cast<std::int16_t>(c + 2))
       teeth.push_back({row, c, static_cast<std::int16_t>(c + 1)});
   const auto with_bar = [&](std::int16_t row) {
-    std::vector<PixelRun> runs = teeth;
+    RunVector runs = teeth;
     runs.push_back({row, 0, 39});
     return Region::from_runs(std::move(runs));
   };

@@ -71,8 +71,8 @@ std::int64_t euler_number_of(const PixelPatterns& patterns, Connectivity foregro
 }
 
 /// First and last pixel of every row, by rising row, then column.
-std::vector<PixelPoint> row_ends(std::span<const PixelRun> runs) {
-  std::vector<PixelPoint> points;
+RecycledVector<PixelPoint> row_ends(std::span<const PixelRun> runs) {
+  RecycledVector<PixelPoint> points;
   for (std::size_t i = 0; i < runs.size();) {
     const std::size_t end = row_end(runs, i);
     const double row = runs[i].row, first = runs[i].begin, last = runs[end - 1].end - 1;
@@ -84,7 +84,7 @@ std::vector<PixelPoint> row_ends(std::span<const PixelRun> runs) {
 }
 
 /// The hull's chain along points in the order given, turning clockwise on the screen (x right, y down) only.
-void append_chain(const std::vector<PixelPoint>& points, std::vector<PixelPoint>& hull) {
+void append_chain(const RecycledVector<PixelPoint>& points, RecycledVector<PixelPoint>& hull) {
   const std::size_t start = hull.size();
   for (const PixelPoint& point : points) {
     while (hull.size() >= start + 2 && cross(hull.back() - hull[hull.size() - 2], point - hull.back()) <= 0)
@@ -151,10 +151,10 @@ std::int64_t hole_count(const Region& region, Connectivity foreground) {
   return label_runs(region, foreground).count - euler_number(region, foreground);
 }
 
-std::vector<PixelPoint> convex_hull(const Region& region) {
-  const std::vector<PixelPoint> points = row_ends(region.runs());
+RecycledVector<PixelPoint> convex_hull(const Region& region) {
+  const RecycledVector<PixelPoint> points = row_ends(region.runs());
   if (points.size() < 2) return points;
-  std::vector<PixelPoint> hull;
+  RecycledVector<PixelPoint> hull;
   append_chain(points, hull);
   append_chain({points.rbegin(), points.rend()}, hull);
   return hull;
@@ -164,7 +164,7 @@ std::int64_t convex_area(const Region& region) {
   if (region.empty()) return 0;
   // Pick's theorem: A = inner + border / 2 - 1, so inner + border = A + border / 2 + 1; holds for lines and points,
   // too.
-  const std::vector<PixelPoint> hull = convex_hull(region);
+  const RecycledVector<PixelPoint> hull = convex_hull(region);
   std::int64_t twice_area = 0, border = 0;
   for (std::size_t i = 0; i < hull.size(); ++i) {
     const PixelPoint p = hull[i], q = hull[(i + 1) % hull.size()];

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
+#include "tassilo/base/recycled.h"
 #include "tassilo/geometry/point.h"
 #include "tassilo/region/components.h"
 #include "tassilo/region/region.h"
@@ -69,7 +69,7 @@ std::int64_t hole_count(const Region& region, Connectivity foreground = Connecti
 /// Corners of the convex hull of all pixel centres: the leftmost pixel of the top row first, then clockwise as seen on
 /// the screen; no three on a line. One point for one pixel, two for a line, none for the empty region. [px]
 /// O(R). source: A. M. Andrew, "Another efficient algorithm for convex hulls in two dimensions", IPL 9(5), 1979.
-std::vector<PixelPoint> convex_hull(const Region& region);
+RecycledVector<PixelPoint> convex_hull(const Region& region);
 /// Number of pixels whose centres lie in the convex hull or on it: the area of HALCON `shape_trans` 'convex'. O(R).
 std::int64_t convex_area(const Region& region);
 /// area / convex_area, in (0, 1]: 1 for a convex region. HALCON `convexity`. O(R).

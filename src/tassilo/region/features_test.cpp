@@ -137,7 +137,7 @@ TEST(Features, OfADiscAreThoseOfACircle) {
 }
 
 TEST(Features, OfLinesAndSinglePixelsAreHalconsZeros) {
-  std::vector<PixelRun> slanted;
+  RunVector slanted;
   for (std::int16_t k = 0; k < 200; ++k) {
     const auto column = static_cast<std::int16_t>(3 * k);
     slanted.push_back({k, column, static_cast<std::int16_t>(column + 1)});
@@ -153,7 +153,7 @@ TEST(Features, OfLinesAndSinglePixelsAreHalconsZeros) {
   // Lines of every slope and length: rounding must not give them a width.
   for (int step = 1; step < 40; ++step)
     for (int count = 2; count < 120; count += 7) {
-      std::vector<PixelRun> line;
+      RunVector line;
       for (int k = 0; k < count; ++k)
         line.push_back({static_cast<std::int16_t>(k), static_cast<std::int16_t>(step * k),
                         static_cast<std::int16_t>(step * k + 1)});
@@ -238,7 +238,7 @@ TEST(ConvexHull, HoldsAllPixelsTurnsClockwiseAndHasItsCornersInTheRegion) {
     SCOPED_TRACE(seed);
     const auto [region, box] = random_case(seed);
     if (region.empty()) continue;
-    const std::vector<PixelPoint> hull = convex_hull(region);
+    const RecycledVector<PixelPoint> hull = convex_hull(region);
     const PixelRun first = region.runs().front();
     EXPECT_EQ(hull.front(), (PixelPoint{double(first.begin), double(first.row)}));
     const auto side = [&](std::size_t i, PixelPoint p) {

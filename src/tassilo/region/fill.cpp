@@ -18,7 +18,7 @@ Region holes_up_to(const Region& region, const FillOptions& options) {
     std::int64_t area = 0;
     bool outside = false;
   };
-  std::vector<Part> parts(static_cast<std::size_t>(labels.count));
+  RecycledVector<Part> parts(static_cast<std::size_t>(labels.count));
   const auto runs = gaps.runs();
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const PixelRun& run = runs[i];
@@ -26,7 +26,7 @@ Region holes_up_to(const Region& region, const FillOptions& options) {
     part.area += run.length();
     part.outside |= run.row == box.y0 || run.row == box.y1 - 1 || run.begin == box.x0 || run.end == box.x1;
   }
-  std::vector<PixelRun> kept;
+  RunVector kept;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const Part& part = parts[static_cast<std::size_t>(labels.label[i])];
     if (!part.outside && part.area <= options.max_area_px) kept.push_back(runs[i]);

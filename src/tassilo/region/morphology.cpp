@@ -23,8 +23,8 @@ bool holds_run(const Region& region, int row, const PixelRun& run) {
 }
 
 /// Boxes whose union is the element, each as high as its run allows; by rising height, no box twice.
-std::vector<PixelBox> maximal_boxes(const Region& element) {
-  std::vector<PixelBox> boxes;
+RecycledVector<PixelBox> maximal_boxes(const Region& element) {
+  RecycledVector<PixelBox> boxes;
   for (const PixelRun& run : element.runs()) {
     const bool seen = std::ranges::any_of(boxes, [&](const PixelBox& box) {
       return box.x0 == run.begin && box.x1 == run.end && box.y0 <= run.row && run.row < box.y1;
@@ -70,7 +70,7 @@ struct Erode {
 template <class Operation>
 Region over_element(const Region& region, const Region& element) {
   expects(!element.empty(), "a structuring element has pixels");
-  const std::vector<PixelBox> boxes = maximal_boxes(element);
+  const RecycledVector<PixelBox> boxes = maximal_boxes(element);
   const int narrowest = std::ranges::min(boxes, {}, &PixelBox::width).width();
   // All boxes share the first `narrowest` columns; done first, as this leaves fewer runs for what follows.
   // `tall` is the region after columns 0 .. narrowest - 1 and rows 0 .. height - 1.
@@ -101,7 +101,7 @@ Region rectangle(int width, int height) {
 Region disc(double radius) {
   expects(radius >= 0, "a disc's radius is not negative");
   const int reach = static_cast<int>(radius);
-  std::vector<PixelRun> runs;
+  RunVector runs;
   for (int row = -reach; row <= reach; ++row) {
     const int half = static_cast<int>(std::sqrt(radius * radius - static_cast<double>(row) * row));
     runs.push_back({to_coordinate(row), to_coordinate(-half), to_coordinate(half + 1)});

@@ -38,7 +38,7 @@ TEST(OpenCv, SameComponentsWithAreaCenterAndBox) {
     for (const auto& [connectivity, number] : {std::pair{Connectivity::four, 4}, std::pair{Connectivity::eight, 8}}) {
       cv::Mat labels, stats, centers;
       const int count = cv::connectedComponentsWithStats(mat_of(region, box), labels, stats, centers, number, CV_32S);
-      const std::vector<Region> parts = components(region, connectivity);
+      const RecycledVector<Region> parts = components(region, connectivity);
       ASSERT_EQ(std::ssize(parts), count - 1);
       for (const Region& part : parts) {
         const PixelRun first = part.runs().front();
@@ -119,7 +119,7 @@ TEST(OpenCv, SameMomentsContourLengthAndHull) {
 
     std::vector<cv::Point> hull;
     cv::convexHull(all, hull);
-    const std::vector<PixelPoint> ours = convex_hull(region);
+    const RecycledVector<PixelPoint> ours = convex_hull(region);
     ASSERT_EQ(ours.size(), hull.size());
     double twice_area = 0;
     for (std::size_t i = 0; i < ours.size(); ++i) twice_area += cross(ours[i], ours[(i + 1) % ours.size()]);

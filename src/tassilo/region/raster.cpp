@@ -39,7 +39,7 @@ int ceil_within(double value, int low, int high) {
 Region region_of_bytes(ByteView image, const std::bitset<256>& values) {
   std::array<bool, 256> inside{};
   for (std::size_t value = 0; value < inside.size(); ++value) inside[value] = values[value];
-  std::vector<PixelRun> runs;
+  RunVector runs;
   for (int r = 0; r < image.height; ++r) {
     const auto bytes = image.row(r);
     for (auto begin = bytes.begin(); begin != bytes.end();) {
@@ -56,7 +56,7 @@ Region region_of_bytes(ByteView image, const std::bitset<256>& values) {
 
 std::vector<Region> regions_of_labels(ByteView labels, int count) {
   expects(count >= 0 && count <= 256, "labels are bytes");
-  std::vector<std::vector<PixelRun>> runs(static_cast<std::size_t>(count));
+  std::vector<RunVector> runs(static_cast<std::size_t>(count));
   for (int r = 0; r < labels.height; ++r) {
     const auto bytes = labels.row(r);
     for (auto begin = bytes.begin(); begin != bytes.end();) {
@@ -70,7 +70,7 @@ std::vector<Region> regions_of_labels(ByteView labels, int count) {
   }
   std::vector<Region> regions;
   regions.reserve(runs.size());
-  for (std::vector<PixelRun>& of_label : runs) regions.push_back(Region::from_sorted(std::move(of_label)));
+  for (RunVector& of_label : runs) regions.push_back(Region::from_sorted(std::move(of_label)));
   return regions;
 }
 
@@ -89,7 +89,7 @@ std::vector<std::uint8_t> to_labels(std::span<const Region> regions, const Pixel
 
 Region region_from_polygon(std::span<const PixelPoint> vertices, const PixelBox& window) {
   if (vertices.size() < 3 || window.empty()) return {};
-  std::vector<Crossing> crossings;
+  RecycledVector<Crossing> crossings;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     PixelPoint top = vertices[i], bottom = vertices[(i + 1) % vertices.size()];
     expects(std::isfinite(top.x) && std::isfinite(top.y), "polygon vertices are finite");
@@ -103,7 +103,7 @@ Region region_from_polygon(std::span<const PixelPoint> vertices, const PixelBox&
   }
   std::ranges::sort(crossings, [](const Crossing& a, const Crossing& b) { return a < b; });
   // Every row has an even number of crossings, as a closed outline comes back.
-  std::vector<PixelRun> runs;
+  RunVector runs;
   for (std::size_t i = 0; i + 1 < crossings.size(); i += 2)
     runs.push_back({to_coordinate(crossings[i].row),
                     to_coordinate(ceil_within(crossings[i].column, window.x0, window.x1)),

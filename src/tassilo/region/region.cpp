@@ -22,7 +22,7 @@ namespace {
 
 }  // namespace
 
-Region Region::from_sorted(std::vector<PixelRun> runs) {
+Region Region::from_sorted(RunVector runs) {
 #ifndef NDEBUG
   expects(keeps_invariant(runs), "runs sorted, disjoint, not touching, not empty");
 #endif
@@ -31,7 +31,7 @@ Region Region::from_sorted(std::vector<PixelRun> runs) {
   return region;
 }
 
-Region Region::from_runs(std::vector<PixelRun> runs) {
+Region Region::from_runs(RunVector runs) {
   std::erase_if(runs, [](const PixelRun& run) { return run.begin >= run.end; });
   std::ranges::sort(runs);
   RunBuilder result(runs.size());
@@ -40,7 +40,7 @@ Region Region::from_runs(std::vector<PixelRun> runs) {
 }
 
 Region Region::from_box(const PixelBox& box) {
-  std::vector<PixelRun> runs;
+  RunVector runs;
   if (!box.empty()) {
     runs.reserve(static_cast<std::size_t>(box.height()));
     for (int r = box.y0; r < box.y1; ++r)

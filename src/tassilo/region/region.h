@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <span>
 #include <utility>
-#include <vector>
 
+#include "tassilo/base/recycled.h"
 #include "tassilo/geometry/box.h"
 
 namespace tassilo {
@@ -18,6 +18,8 @@ struct PixelRun {
   friend auto operator<=>(const PixelRun&, const PixelRun&) = default;
 };
 
+using RunVector = RecycledVector<PixelRun>;
+
 /// A set of pixels as runs; need not be connected, may be empty.
 ///
 /// Invariant: runs are not empty, sorted by (row, begin), and two runs of a row neither overlap nor touch.
@@ -27,21 +29,21 @@ class Region {
   Region() = default;
 
   /// Takes runs that already keep the invariant; checked in debug builds. O(1) in release.
-  static Region from_sorted(std::vector<PixelRun> runs);
+  static Region from_sorted(RunVector runs);
   /// Any runs: empty ones dropped, overlapping and touching ones joined. O(R log R).
-  static Region from_runs(std::vector<PixelRun> runs);
+  static Region from_runs(RunVector runs);
   /// All pixels of a box.
   static Region from_box(const PixelBox& box);
 
   std::span<const PixelRun> runs() const& { return runs_; }
   std::span<const PixelRun> runs() const&& = delete;  ///< Would outlive the runs: for (run : opening(...).runs()).
   /// Gives the runs away, so that their memory can serve the next region; the region is empty afterwards.
-  std::vector<PixelRun> take_runs() { return std::exchange(runs_, {}); }
+  RunVector take_runs() { return std::exchange(runs_, {}); }
   bool empty() const { return runs_.empty(); }
   friend bool operator==(const Region&, const Region&) = default;
 
  private:
-  std::vector<PixelRun> runs_;
+  RunVector runs_;
 };
 
 /// Number of pixels. O(R).

@@ -7,7 +7,7 @@ namespace {
 
 TEST(Region, JoinsOverlappingAndTouchingRuns) {
   const Region region = Region::from_runs({{1, 5, 9}, {0, 3, 3}, {1, 1, 3}, {1, 3, 6}, {2, 9, 12}});
-  const std::vector<PixelRun> expected{{1, 1, 9}, {2, 9, 12}};
+  const RunVector expected{{1, 1, 9}, {2, 9, 12}};
   EXPECT_TRUE(std::ranges::equal(region.runs(), expected));
   EXPECT_EQ(area(region), 11);
   EXPECT_EQ(bounding_box(region), (PixelBox{1, 1, 12, 3}));

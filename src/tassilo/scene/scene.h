@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 #include <utility>
-#include <vector>
 
+#include "tassilo/base/recycled.h"
 #include "tassilo/field/field_model.h"
 #include "tassilo/geometry/box.h"
 #include "tassilo/geometry/point.h"
@@ -46,7 +46,7 @@ struct Goal {
   PixelBox box;
   std::optional<double> bearing;       ///< Of the mouth's middle, or of the visible part when that is unknown. [rad]
   std::optional<FloorPoint> position;  ///< Middle of the mouth.
-  std::vector<GoalPost> posts;
+  RecycledVector<GoalPost> posts;
 };
 
 enum class Team { unknown, cyan, magenta };
@@ -78,10 +78,10 @@ struct CircleSeen {
 enum class SectorState { unseen, free, blocked };
 struct FreeSpace {
   FloorPoint origin;
-  double angle_min = 0;        ///< Centre of sector 0, robot frame. [rad]
-  double angle_increment = 0;  ///< [rad]
-  std::vector<double> ranges;  ///< From origin; meaningless where unseen. [m]
-  std::vector<SectorState> states;
+  double angle_min = 0;           ///< Centre of sector 0, robot frame. [rad]
+  double angle_increment = 0;     ///< [rad]
+  RecycledVector<double> ranges;  ///< From origin; meaningless where unseen. [m]
+  RecycledVector<SectorState> states;
 };
 
 enum class PoseKind { two_lines, one_line, predicted, goal, model, start };
@@ -104,14 +104,14 @@ struct Scene {
   double t = 0;       ///< Capture time on the source's clock. [s]
   std::string image;  ///< File name for single images, else empty.
   std::optional<PoseSeen> pose;
-  std::vector<Ball> balls;  ///< Best first.
-  std::vector<Goal> goals;
-  std::vector<RobotSeen> robots;
-  std::vector<LineSeen> lines;
-  std::vector<CircleSeen> circles;
+  RecycledVector<Ball> balls;  ///< Best first.
+  RecycledVector<Goal> goals;
+  RecycledVector<RobotSeen> robots;
+  RecycledVector<LineSeen> lines;
+  RecycledVector<CircleSeen> circles;
   std::optional<FreeSpace> free_space;
-  std::vector<std::pair<std::string, std::string>> why;  ///< Subject -> short reason of acceptance or refusal.
-  std::vector<StageTime> timing;                         ///< In the order they ran; "total" last.
+  RecycledVector<std::pair<std::string, std::string>> why;  ///< Subject -> short reason of acceptance or refusal.
+  RecycledVector<StageTime> timing;                         ///< In the order they ran; "total" last.
 };
 
 std::string_view to_string(GoalColor color);

@@ -107,7 +107,7 @@ class Judge {
 };
 
 /// Gaps between carpet runs of one row.
-void gaps_along_rows(const Region& carpet, std::vector<Gap>& gaps) {
+void gaps_along_rows(const Region& carpet, RecycledVector<Gap>& gaps) {
   const auto runs = carpet.runs();
   for (std::size_t i = 1; i < runs.size(); ++i)
     if (runs[i].row == runs[i - 1].row)
@@ -115,7 +115,7 @@ void gaps_along_rows(const Region& carpet, std::vector<Gap>& gaps) {
 }
 
 /// Gaps below carpet pixels down to the next carpet pixel, or to the lower border: there the carpet goes on.
-void gaps_along_columns(const Surface& surface, const Region& carpet, std::vector<Gap>& gaps) {
+void gaps_along_columns(const Surface& surface, const Region& carpet, RecycledVector<Gap>& gaps) {
   const Region below =
       clipped(difference(translated(carpet, {.columns = 0, .rows = 1}), carpet), {0, 0, surface.width, surface.height});
   for (const PixelRun& run : below.runs())
@@ -149,7 +149,7 @@ Surface find_surface(const SurfaceInput& input, const GroundMap* ground, const S
   paint(surface, *input.white, SurfaceKind::wall);
   for (const Region* region : input.colored) paint(surface, *region, SurfaceKind::object);
 
-  thread_local std::vector<Gap> gaps, wide;
+  thread_local RecycledVector<Gap> gaps, wide;
   gaps.clear();
   wide.clear();
   gaps_along_columns(surface, *input.carpet, gaps);  // before any gap along a row becomes carpet

@@ -2,8 +2,8 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "tassilo/base/recycled.h"
 #include "tassilo/camera/ground_map.h"
 #include "tassilo/region/region.h"
 
@@ -21,7 +21,7 @@ enum class SurfaceKind : std::uint8_t {
 /// One kind for every pixel, row-major.
 struct Surface {
   int width = 0, height = 0;
-  std::vector<SurfaceKind> kinds;
+  RecycledVector<SurfaceKind> kinds;
 
   SurfaceKind at(int column, int row) const { return kinds[static_cast<std::size_t>(row * width + column)]; }
   std::span<const SurfaceKind> row(int r) const {

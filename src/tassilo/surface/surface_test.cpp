@@ -16,7 +16,7 @@ struct Painted {
       : frame(test::render(camera, world)), ground(camera) {
     const int width = frame.view.width(), height = frame.view.height();
     const auto where = [&](auto holds) {
-      std::vector<PixelRun> runs;
+      RunVector runs;
       for (int r = 0; r < height; ++r)
         for (int c = 0; c < width; ++c)
           if (holds(c, r))

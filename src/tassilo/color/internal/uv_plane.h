@@ -23,7 +23,7 @@ struct UvPlane {
 
 template <class T, class Predicate>
 Region region_where(const UvPlane<T>& plane, Predicate holds) {
-  std::vector<PixelRun> runs;
+  RunVector runs;
   for (int v = 0; v < 256; ++v)
     for (int u = 0; u < 256; ++u) {
       if (!holds(plane(u, v))) continue;

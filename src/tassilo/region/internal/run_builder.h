@@ -36,7 +36,7 @@ class RunBuilder {
   }
 
  private:
-  std::vector<PixelRun> runs_;  ///< First a place holder to compare the first run with, last room for one left out.
+  RunVector runs_;  ///< First a place holder to compare the first run with, last room for one left out.
   std::size_t size_ = 0;
 };
 

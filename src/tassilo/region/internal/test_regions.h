@@ -23,7 +23,7 @@ struct RandomRegionOptions {
 
 /// The pixels of `box` for which `inside(column, row)` holds, built pixel by pixel.
 inline Region region_by_pixel(const PixelBox& box, const std::function<bool(int, int)>& inside) {
-  std::vector<PixelRun> runs;
+  RunVector runs;
   for (int r = box.y0; r < box.y1; ++r)
     for (int c = box.x0; c < box.x1; ++c)
       if (inside(c, r))
@@ -40,7 +40,7 @@ inline Region random_region(unsigned seed, const RandomRegionOptions& options) {
     const auto threshold = options.density * static_cast<double>(std::mt19937::max());
     return region_by_pixel(box, [&](int, int) { return static_cast<double>(random()) < threshold; });
   }
-  std::vector<PixelRun> runs;
+  RunVector runs;
   for (int k = 0; k < options.boxes; ++k) {
     const int x = box.x0 + below(box.width()), y = box.y0 + below(box.height());
     const int x_end = x + 1 + below(box.x1 - x), y_end = y + 1 + below(box.y1 - y);

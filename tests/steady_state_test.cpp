@@ -1,0 +1,75 @@
+// Once it has seen what a recording shows, the vision allocates nothing more: every call of operator new is counted.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <new>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "support/recording.h"
+
+namespace {
+
+std::atomic<std::int64_t> allocations = 0;
+
+void* counted(std::size_t bytes, std::size_t alignment) {
+  ++allocations;
+  const std::size_t rounded = (std::max<std::size_t>(bytes, 1) + alignment - 1) / alignment * alignment;
+  if (void* block = std::aligned_alloc(alignment, rounded)) return block;
+  throw std::bad_alloc();
+}
+
+}  // namespace
+
+void* operator new(std::size_t bytes) { return counted(bytes, alignof(std::max_align_t)); }
+void* operator new(std::size_t bytes, std::align_val_t alignment) {
+  return counted(bytes, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* block) noexcept { std::free(block); }
+void operator delete(void* block, std::size_t) noexcept { std::free(block); }
+void operator delete(void* block, std::align_val_t) noexcept { std::free(block); }
+void operator delete(void* block, std::size_t, std::align_val_t) noexcept { std::free(block); }
+
+namespace tassilo {
+namespace {
+
+class SteadyState : public testing::TestWithParam<std::pair<const char*, const char*>> {};
+
+TEST_P(SteadyState, AllocatesNothingPerFrame) {
+  const test::Recording recording = test::load_recording(GetParam().first, GetParam().second);
+  ASSERT_FALSE(recording.frames.empty());
+  const Vision vision(recording.setup);
+  VisionWorkspace workspace;
+  std::size_t seen = 0;
+  for (int pass = 0; pass < 3; ++pass)
+    for (const Frame& frame : recording.frames) {
+      const std::int64_t before = allocations;
+      const Scene scene = vision(frame, workspace);
+      seen += scene.balls.size() + scene.robots.size() + scene.lines.size();
+      if (pass > 0) {
+        EXPECT_EQ(allocations - before, 0) << "frame " << frame.index << ", pass " << pass;
+      }
+    }
+  EXPECT_GT(seen, recording.frames.size());
+}
+
+INSTANTIATE_TEST_SUITE_P(Recordings, SteadyState,
+                         testing::Values(std::pair("d01_approach", "train_div/samples.yaml"),
+                                         std::pair("d05_distract", "train_div/samples.yaml"),
+                                         std::pair("d06_vga", "train_vga/samples.yaml")),
+                         [](const auto& row) { return std::string(row.param.first); });
+
+TEST(AllocationCount, CountsAllocations) {
+  const std::int64_t before = allocations;
+  const std::vector<int> one(3);
+  EXPECT_EQ(allocations - before, 1);
+}
+
+}  // namespace
+}  // namespace tassilo
