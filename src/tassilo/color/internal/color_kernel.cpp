@@ -10,11 +10,6 @@ void claims_of(const KernelTable& table, const YuvRow& row, int pairs, std::uint
   for (int k = 0; k < pairs; ++k) claims[k] = chroma[row.v[k * row.chroma_step] * 256 + row.u[k * row.chroma_step]];
 }
 
-void labels_of(const KernelTable& table, const std::uint8_t* claims, const YuvRow& row, int width,
-               std::uint8_t* labels) {
-  for (int c = 0; c < width; ++c) labels[c] = table.label(claims[c / 2], row.y[c * row.y_step]);
-}
-
 int runs_of(const std::uint8_t* labels, int width, const RowRuns& runs) {
   int count = 0;
   for (int c = 0; c < width;) {
@@ -27,6 +22,12 @@ int runs_of(const std::uint8_t* labels, int width, const RowRuns& runs) {
     c = end;
   }
   return count;
+}
+
+int labels_of(const KernelTable& table, const std::uint8_t* claims, const YuvRow& row, int width, std::uint8_t* labels,
+              const RowRuns& runs) {
+  for (int c = 0; c < width; ++c) labels[c] = table.label(claims[c / 2], row.y[c * row.y_step]);
+  return runs_of(labels, width, runs);
 }
 
 std::uint8_t same(std::uint8_t a, std::uint8_t b, std::uint8_t c) { return a == b && c == b ? b : std::uint8_t{0}; }
@@ -42,7 +43,7 @@ void erode_rows(const ThreeRows& rows, int width, std::uint8_t* labels) {
   }
 }
 
-void dilate_rows(const ThreeRows& rows, int width, std::uint8_t* labels) {
+int dilate_rows(const ThreeRows& rows, int width, std::uint8_t* labels, const RowRuns& runs) {
   const auto column = [&](int c) -> std::uint8_t { return rows.above[c] | rows.here[c] | rows.below[c]; };
   std::uint8_t before = 0, here = width > 0 ? column(0) : std::uint8_t{0};
   for (int c = 0; c < width; ++c) {
@@ -51,11 +52,12 @@ void dilate_rows(const ThreeRows& rows, int width, std::uint8_t* labels) {
     before = here;
     here = after;
   }
+  return runs_of(labels, width, runs);
 }
 
 }  // namespace
 
-constinit const ColorKernel plain_color_kernel{claims_of, labels_of, runs_of, erode_rows, dilate_rows};
+constinit const ColorKernel plain_color_kernel{claims_of, labels_of, erode_rows, dilate_rows};
 
 const ColorKernel& color_kernel(Kernel kernel) {
   switch (kernel) {

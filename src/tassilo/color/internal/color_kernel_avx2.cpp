@@ -26,8 +26,33 @@ void claims_of(const KernelTable& table, const YuvRow& row, int pairs, std::uint
   plain_color_kernel.claims(table, row, pairs, claims);
 }
 
-TASSILO_AVX2 void labels_of(const KernelTable& table, const std::uint8_t* claims, const YuvRow& row, int width,
-                            std::uint8_t* labels) {
+TASSILO_AVX2 int runs_of(const std::uint8_t* labels, int width, const RowRuns& runs) {
+  int count = 0;
+  std::uint8_t label = 0;  // of the run at work
+  const auto change = [&](int c, std::uint8_t to) {
+    runs.end[count] = static_cast<std::uint16_t>(c);
+    count += label != 0;
+    runs.begin[count] = static_cast<std::uint16_t>(c);
+    runs.label[count] = label = to;
+  };
+  if (width > 0 && labels[0] != 0) change(0, labels[0]);
+  int c = 1;
+  for (; c + 32 <= width; c += 32) {
+    const __m256i same = _mm256_cmpeq_epi8(load(labels + c), load(labels + c - 1));
+    auto changed = ~static_cast<std::uint32_t>(_mm256_movemask_epi8(same));
+    for (; changed != 0; changed &= changed - 1) {
+      const int at = c + __builtin_ctz(changed);
+      change(at, labels[at]);
+    }
+  }
+  for (; c < width; ++c)
+    if (labels[c] != labels[c - 1]) change(c, labels[c]);
+  if (width > 0 && label != 0) change(width, 0);
+  return count;
+}
+
+TASSILO_AVX2 int labels_of(const KernelTable& table, const std::uint8_t* claims, const YuvRow& row, int width,
+                           std::uint8_t* labels, const RowRuns& runs) {
   const KernelTable::HalfBytes& halves = table.half_bytes;
   const __m256i whole = twice(halves.whole), first = twice(halves.first), last = twice(halves.last),
                 both = twice(halves.both), from = twice(halves.from), to = twice(halves.to);
@@ -66,32 +91,8 @@ TASSILO_AVX2 void labels_of(const KernelTable& table, const std::uint8_t* claims
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(labels + c), label);
   }
   const YuvRow rest{row.y + c * row.y_step, row.u, row.v, row.y_step, row.chroma_step};
-  plain_color_kernel.labels(table, claims + c / 2, rest, width - c, labels + c);
-}
-
-TASSILO_AVX2 int runs_of(const std::uint8_t* labels, int width, const RowRuns& runs) {
-  int count = 0;
-  std::uint8_t label = 0;  // of the run at work
-  const auto change = [&](int c, std::uint8_t to) {
-    runs.end[count] = static_cast<std::uint16_t>(c);
-    count += label != 0;
-    runs.begin[count] = static_cast<std::uint16_t>(c);
-    runs.label[count] = label = to;
-  };
-  if (width > 0 && labels[0] != 0) change(0, labels[0]);
-  int c = 1;
-  for (; c + 32 <= width; c += 32) {
-    const __m256i same = _mm256_cmpeq_epi8(load(labels + c), load(labels + c - 1));
-    auto changed = ~static_cast<std::uint32_t>(_mm256_movemask_epi8(same));
-    for (; changed != 0; changed &= changed - 1) {
-      const int at = c + __builtin_ctz(changed);
-      change(at, labels[at]);
-    }
-  }
-  for (; c < width; ++c)
-    if (labels[c] != labels[c - 1]) change(c, labels[c]);
-  if (width > 0 && label != 0) change(width, 0);
-  return count;
+  plain_color_kernel.labels(table, claims + c / 2, rest, width - c, labels + c, runs);  // its runs are written over
+  return runs_of(labels, width, runs);
 }
 
 /// The block of 32 bytes, of which those from `width` on are 0.
@@ -142,9 +143,14 @@ TASSILO_AVX2 void over_nine(const ThreeRows& rows, int width, std::uint8_t* labe
   }
 }
 
+TASSILO_AVX2 int dilate_rows(const ThreeRows& rows, int width, std::uint8_t* labels, const RowRuns& runs) {
+  over_nine<Dilate>(rows, width, labels);
+  return runs_of(labels, width, runs);
+}
+
 }  // namespace
 
-constinit const ColorKernel avx2_color_kernel{claims_of, labels_of, runs_of, over_nine<Erode>, over_nine<Dilate>};
+constinit const ColorKernel avx2_color_kernel{claims_of, labels_of, over_nine<Erode>, dilate_rows};
 
 }  // namespace tassilo
 
