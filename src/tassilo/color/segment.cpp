@@ -21,8 +21,8 @@ class RowLabeler {
         kernel_(kernel),
         claims_(static_cast<std::size_t>(frame.width() + 1) / 2) {}
 
-  /// Returns the number of runs.
-  int operator()(int r, std::uint8_t* labels, const RowRuns& runs) {
+  /// Returns the number of runs, which are left out where `runs` is null.
+  int operator()(int r, std::uint8_t* labels, const RowRuns* runs) {
     const YuvRow row = frame_.row(r);
     // With halved chroma rows two rows share their claims.
     if (row.u != claimed_) kernel_.claims(table_, row, (frame_.width() + 1) / 2, claims_.data());
@@ -94,7 +94,8 @@ Segmentation segment(const FrameView& frame, const Classifier& classifier, Segme
   set_size(recycled, frame.width(), frame.height());
   RunSinks sinks(recycled);
   RowLabeler label(frame, classifier, color_kernel(kernel_in_use()));
-  for (int r = 0; r < frame.height(); ++r) sinks.add_row(r, label(r, row_of(recycled, r), sinks.row_runs()));
+  const RowRuns runs = sinks.row_runs();
+  for (int r = 0; r < frame.height(); ++r) sinks.add_row(r, label(r, row_of(recycled, r), &runs));
   std::move(sinks).finish(recycled);
   return recycled;
 }
@@ -108,7 +109,7 @@ Segmentation segment_opened(const FrameView& frame, const Classifier& classifier
   RecycledBuffer<std::uint8_t> rows(3 * static_cast<std::size_t>(frame.width()));
   open_rows(recycled, sinks, kernel, [&](int r) {
     std::uint8_t* labels = rows.data() + static_cast<std::ptrdiff_t>(r % 3) * frame.width();
-    label(r, labels, sinks.row_runs());
+    label(r, labels, nullptr);
     return labels;
   });
   std::move(sinks).finish(recycled);

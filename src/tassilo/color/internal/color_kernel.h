@@ -28,9 +28,10 @@ struct RowRuns {
 struct ColorKernel {
   /// Claims of `pairs` chroma cells.
   void (*claims)(const KernelTable& table, const YuvRow& row, int pairs, std::uint8_t* claims);
-  /// Labels 0..8 of `width` pixels from the claims of (width + 1) / 2 cells, and their runs. Returns how many runs.
+  /// Labels 0..8 of `width` pixels from the claims of (width + 1) / 2 cells, and their runs unless `runs` is null.
+  /// Returns how many runs.
   int (*labels)(const KernelTable& table, const std::uint8_t* claims, const YuvRow& row, int width,
-                std::uint8_t* labels, const RowRuns& runs);
+                std::uint8_t* labels, const RowRuns* runs);
   /// Labels that all nine pixels around and at a place share, else no_color; beside the row is no_color.
   void (*erode)(const ThreeRows& rows, int width, std::uint8_t* labels);
   /// The label that any of the nine pixels has; those that are not no_color must be equal. And their runs, as `labels`.

@@ -201,14 +201,14 @@ struct RunWriter {
   }
 };
 
-TASSILO_AVX512 int labels_of(const KernelTable& table, const std::uint8_t* claims, const YuvRow& row, int width,
-                             std::uint8_t* labels, const RowRuns& runs) {
+template <class Use>
+TASSILO_AVX512 inline void for_labels(const KernelTable& table, const std::uint8_t* claims, const YuvRow& row,
+                                      int width, std::uint8_t* labels, Use use) {
   const std::uint8_t* of_y = table.bright.data();
   const Table256 bright{load(of_y), load(of_y + 64), load(of_y + 128), load(of_y + 192)};
   const __m512i label_of_rank =
       _mm512_broadcast_i32x4(_mm_loadu_si128(reinterpret_cast<const __m128i*>(table.label_of_rank.data())));
   const __m512i half = load(kHalf), even = load(kEven), odd = load(kOdd);
-  RunWriter writer{runs};
   __m512i before = _mm512_setzero_si512();
   int c = 0;
   for (; c + 64 <= width; c += 64) {
@@ -224,7 +224,7 @@ TASSILO_AVX512 int labels_of(const KernelTable& table, const std::uint8_t* claim
     }
     const __m512i here = labels_of_pixels(bright, label_of_rank, _mm512_permutexvar_epi8(half, pairs), y);
     _mm512_storeu_si512(labels + c, here);
-    writer.add(c, before, here);
+    use(c, before, here);
     before = here;
   }
   if (c < width) {
@@ -232,8 +232,19 @@ TASSILO_AVX512 int labels_of(const KernelTable& table, const std::uint8_t* claim
     for (int k = c; k < width; ++k)
       rest[static_cast<std::size_t>(k - c)] = table.label(claims[k / 2], row.y[k * row.y_step]);
     std::memcpy(labels + c, rest.data(), static_cast<std::size_t>(width - c));
-    writer.add(c, before, load(rest.data()));
+    use(c, before, load(rest.data()));
   }
+}
+
+TASSILO_AVX512 int labels_of(const KernelTable& table, const std::uint8_t* claims, const YuvRow& row, int width,
+                             std::uint8_t* labels, const RowRuns* runs) {
+  if (runs == nullptr) {
+    for_labels(table, claims, row, width, labels, [](int, __m512i, __m512i) TASSILO_AVX512 {});
+    return 0;
+  }
+  RunWriter writer{*runs};
+  for_labels(table, claims, row, width, labels,
+             [&](int c, __m512i before, __m512i here) TASSILO_AVX512 { writer.add(c, before, here); });
   return writer.finish(width);
 }
 

@@ -88,7 +88,7 @@ int runs_of(const std::uint8_t* labels, int width, const RowRuns& runs) {
 }
 
 int labels_of(const KernelTable& table, const std::uint8_t* claims, const YuvRow& row, int width, std::uint8_t* labels,
-              const RowRuns& runs) {
+              const RowRuns* runs) {
   const uint8x16x4_t bright[4] = {table64(table.bright.data()), table64(table.bright.data() + 64),
                                   table64(table.bright.data() + 128), table64(table.bright.data() + 192)};
   const uint8x16_t label_of_rank = vld1q_u8(table.label_of_rank.data());
@@ -117,8 +117,8 @@ int labels_of(const KernelTable& table, const std::uint8_t* claims, const YuvRow
     vst1q_u8(labels + c + 16, label(vzip2q_u8(pairs, pairs), y1));
   }
   const YuvRow rest{row.y + c * row.y_step, row.u, row.v, row.y_step, row.chroma_step};
-  plain_color_kernel.labels(table, claims + c / 2, rest, width - c, labels + c, runs);  // its runs are written over
-  return runs_of(labels, width, runs);
+  plain_color_kernel.labels(table, claims + c / 2, rest, width - c, labels + c, nullptr);
+  return runs == nullptr ? 0 : runs_of(labels, width, *runs);
 }
 
 /// The block of 16 bytes, of which those from `width` on are 0.
