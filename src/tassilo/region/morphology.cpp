@@ -112,16 +112,19 @@ class Planes {
   }
 
   // The element is moved to pixel (0, 0); the result makes up for it.
-  Region dilation() const { return region_of(dilated(plane(), frame_, boxes_), frame_, element_.x0, element_.y0); }
-  Region erosion() const { return region_of(eroded(plane(), frame_, boxes_), frame_, -element_.x0, -element_.y0); }
-  Region opening() const { return region_of(dilated(eroded(plane(), frame_, boxes_), frame_, boxes_), frame_, 0, 0); }
-  Region closing() const { return region_of(eroded(dilated(plane(), frame_, boxes_), frame_, boxes_), frame_, 0, 0); }
+  Region dilation() const { return region(dilated(plane(), frame_, boxes_), {element_.x0, element_.y0}); }
+  Region erosion() const { return region(eroded(plane(), frame_, boxes_), {-element_.x0, -element_.y0}); }
+  Region opening() const { return region(dilated(eroded(plane(), frame_, boxes_), frame_, boxes_), {}); }
+  Region closing() const { return region(eroded(dilated(plane(), frame_, boxes_), frame_, boxes_), {}); }
 
  private:
   Planes(const Region& region, const PlaneFrame& frame, const PixelBox& element, RecycledVector<PixelBox> boxes)
       : region_(region), frame_(frame), element_(element), boxes_(std::move(boxes)) {}
 
   BitPlane plane() const { return plane_of(region_, frame_); }
+  Region region(const BitPlane& plane, PixelShift shift) const {
+    return region_of(plane, frame_, shift, region_.runs().size());
+  }
 
   const Region& region_;
   PlaneFrame frame_;

@@ -28,8 +28,9 @@ void set_bits(std::uint64_t* row, std::size_t begin, std::size_t end) {
 }
 
 /// Joins a plane with itself, shifted, over boxes of offsets; `sign` is the direction of the shifts.
-template <class Join>
-BitPlane over_boxes(BitPlane plane, const PlaneFrame& frame, std::span<const PixelBox> boxes, int sign, Join join) {
+template <class Join, class Triple>
+BitPlane over_boxes(BitPlane plane, const PlaneFrame& frame, std::span<const PixelBox> boxes, int sign, Join join,
+                    Triple triple) {
   const PlaneKernel& kernel = plane_kernel(kernel_in_use());
   const std::size_t words = frame.words();
   const auto shift = [&](int columns, int rows) {
@@ -39,6 +40,11 @@ BitPlane over_boxes(BitPlane plane, const PlaneFrame& frame, std::span<const Pix
   BitPlane spare(frame);
   /// Over `count` places, each `columns` and `rows` from the one before, beginning with `have` places done already.
   const auto grow = [&](BitPlane& grown, int have, int count, int columns, int rows) {
+    if (have == 1 && count >= 3) {
+      triple(kernel, spare.words(), grown.words(), words, shift(columns, rows));
+      std::swap(grown, spare);
+      have = 3;
+    }
     while (have < count) {
       const int step = std::min(have, count - have);
       join(kernel, spare.words(), grown.words(), grown.words(), words, shift(step * columns, step * rows));
@@ -105,45 +111,46 @@ BitPlane plane_of(const Region& region, const PlaneFrame& frame) {
   return plane;
 }
 
-Region region_of(const BitPlane& plane, const PlaneFrame& frame, int columns, int rows) {
-  const std::size_t words = frame.words();
-  BitPlane changes(frame);
-  plane_kernel(kernel_in_use()).changes(changes.words(), plane.words(), words);
-  const std::uint64_t* const change = changes.words();
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < words; ++i) count += static_cast<std::size_t>(std::popcount(change[i]));
-  // Each run changes the bits twice within its row, as the bit behind a row is 0.
-  RunVector runs(count / 2);
-  PixelRun* run = runs.data();
-  bool inside = false;
-  for (std::size_t r = 0; r < frame.rows; ++r) {
-    const std::int16_t row = to_coordinate(static_cast<int>(r) + frame.y0 + rows);
-    const std::uint64_t* const of_row = change + r * frame.stride;
-    for (std::size_t i = 0; i < frame.stride; ++i)
-      for (std::uint64_t left = of_row[i]; left != 0; left &= left - 1) {
-        const std::int16_t column =
-            to_coordinate(static_cast<int>(i * kBits) + std::countr_zero(left) + frame.x0 + columns);
-        if (inside) {
-          run->end = column;
-          ++run;
-        } else {
-          run->row = row;
-          run->begin = column;
-        }
-        inside = !inside;
-      }
+Region region_of(const BitPlane& plane, const PlaneFrame& frame, PixelShift shift, std::size_t expected) {
+  // Bands of rows, so that what a kernel may write stays small beside the plane.
+  constexpr std::size_t band_words = 4096;
+  const PlaneKernel& kernel = plane_kernel(kernel_in_use());
+  const std::size_t band_rows = std::max<std::size_t>(1, band_words / frame.stride);
+  const std::size_t row_bits = frame.stride * kBits;
+  RecycledBuffer<std::uint32_t> at(std::min(band_rows, frame.rows) * row_bits + 2);
+  RunVector runs;
+  runs.reserve(expected);
+  const double rows_per_bit = 1 / static_cast<double>(row_bits);
+  for (std::size_t first = 0; first < frame.rows; first += band_rows) {
+    const std::size_t band = std::min(band_rows, frame.rows - first);
+    const std::size_t changes = kernel.changes(at.data(), plane.words() + first * frame.stride, band * frame.stride);
+    // Each run changes the bits twice within its row, as the bit behind a row is 0.
+    const std::size_t before = runs.size();
+    runs.resize(before + changes / 2);
+    const int left = frame.x0 + shift.columns, top = frame.y0 + shift.rows + static_cast<int>(first);
+    for (std::size_t k = 0; k < changes; k += 2) {
+      // Exact: the number of a bit has 32 bits, a double 53, and a bit's middle lies half a bit from the next row.
+      const int row = static_cast<int>((at[k] + 0.5) * rows_per_bit);
+      const int begin_of_row = row * static_cast<int>(row_bits);
+      runs[before + k / 2] = {to_coordinate(top + row), to_coordinate(left + static_cast<int>(at[k]) - begin_of_row),
+                              to_coordinate(left + static_cast<int>(at[k + 1]) - begin_of_row)};
+    }
   }
   return Region::from_sorted(std::move(runs));
 }
 
 BitPlane dilated(BitPlane plane, const PlaneFrame& frame, std::span<const PixelBox> boxes) {
-  return over_boxes(std::move(plane), frame, boxes, 1,
-                    [](const PlaneKernel& kernel, auto... arguments) { kernel.join_or(arguments...); });
+  return over_boxes(
+      std::move(plane), frame, boxes, 1,
+      [](const PlaneKernel& kernel, auto... arguments) { kernel.join_or(arguments...); },
+      [](const PlaneKernel& kernel, auto... arguments) { kernel.triple_or(arguments...); });
 }
 
 BitPlane eroded(BitPlane plane, const PlaneFrame& frame, std::span<const PixelBox> boxes) {
-  return over_boxes(std::move(plane), frame, boxes, -1,
-                    [](const PlaneKernel& kernel, auto... arguments) { kernel.join_and(arguments...); });
+  return over_boxes(
+      std::move(plane), frame, boxes, -1,
+      [](const PlaneKernel& kernel, auto... arguments) { kernel.join_and(arguments...); },
+      [](const PlaneKernel& kernel, auto... arguments) { kernel.triple_and(arguments...); });
 }
 
 }  // namespace tassilo

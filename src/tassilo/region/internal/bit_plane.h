@@ -6,6 +6,7 @@
 
 #include "tassilo/base/recycled.h"
 #include "tassilo/geometry/box.h"
+#include "tassilo/region/algebra.h"
 #include "tassilo/region/region.h"
 
 namespace tassilo {
@@ -41,8 +42,8 @@ class BitPlane {
 
 /// The region's pixels, which must lie in the frame. O(words + runs).
 BitPlane plane_of(const Region& region, const PlaneFrame& frame);
-/// The region of the pixels that are set, moved by (columns, rows). O(words + runs).
-Region region_of(const BitPlane& plane, const PlaneFrame& frame, int columns, int rows);
+/// The region of the pixels that are set, moved by `shift`; `expected` runs or so. O(words + runs).
+Region region_of(const BitPlane& plane, const PlaneFrame& frame, PixelShift shift, std::size_t expected);
 
 /// Boxes whose union is a structuring element, moved so that the element's own box begins at pixel (0, 0); by rising
 /// height, none empty.

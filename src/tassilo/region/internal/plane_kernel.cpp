@@ -4,7 +4,15 @@
 
 namespace tassilo {
 
-TASSILO_PLANE_KERNEL(plain_plane_kernel, )
+namespace {
+
+TASSILO_PLANE_JOINS()
+
+std::size_t changes(std::uint32_t* at, const std::uint64_t* b, std::size_t words) { return find_changes(at, b, words); }
+
+}  // namespace
+
+constinit const PlaneKernel plain_plane_kernel{join_or, join_and, triple_or, triple_and, move, changes};
 
 const PlaneKernel& plane_kernel(Kernel kernel) {
   switch (kernel) {

@@ -18,10 +18,15 @@ struct PlaneKernel {
   /// to = a & (b shifted).
   void (*join_and)(std::uint64_t* to, const std::uint64_t* a, const std::uint64_t* b, std::size_t words,
                    std::ptrdiff_t shift);
+  /// to = b | (b shifted) | (b shifted twice as far): what elements of three columns or rows need, in one go.
+  void (*triple_or)(std::uint64_t* to, const std::uint64_t* b, std::size_t words, std::ptrdiff_t shift);
+  /// to = b & (b shifted) & (b shifted twice as far).
+  void (*triple_and)(std::uint64_t* to, const std::uint64_t* b, std::size_t words, std::ptrdiff_t shift);
   /// to = b shifted.
   void (*move)(std::uint64_t* to, const std::uint64_t* b, std::size_t words, std::ptrdiff_t shift);
-  /// to = places whose bit differs from the one before.
-  void (*changes)(std::uint64_t* to, const std::uint64_t* b, std::size_t words);
+  /// Numbers of the bits that differ from the one before, by rising number, to `at`, which has room for 64 a word. The
+  /// word before `b` is read, too. Returns how many there are.
+  std::size_t (*changes)(std::uint32_t* at, const std::uint64_t* b, std::size_t words);
 };
 
 /// The loops for a kernel.
