@@ -4,24 +4,15 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 #include "tassilo/base/recycled.h"
 #include "tassilo/region/features.h"
 #include "tassilo/region/internal/coordinate.h"
+#include "tassilo/region/internal/line_angle.h"
 
 namespace tassilo {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
-
-/// Direction of a line on the screen, in (-pi/2, pi/2].
-double line_angle(PixelPoint direction) {
-  const double phi = std::atan2(-direction.y, direction.x);
-  if (phi > kPi / 2) return phi - kPi;
-  return phi <= -kPi / 2 ? phi + kPi : phi;
-}
 
 /// What the hull's side from corner `side` on sees: coordinates along and across it, times its length. Whole numbers.
 struct SideExtent {
