@@ -28,6 +28,9 @@ class Measured {
   const RotatedRectangle& rectangle() {
     return once(rectangle_, [&] { return smallest_rectangle(region_); });
   }
+  const PixelBox& inner_box() {
+    return once(inner_box_, [&] { return inner_rectangle(region_); });
+  }
   const FeretDiameters& feret() {
     return once(feret_, [&] { return feret_diameters(region_); });
   }
@@ -42,6 +45,7 @@ class Measured {
   const Region& region_;
   std::optional<ShapeFeatures> shape_;
   std::optional<RotatedRectangle> rectangle_;
+  std::optional<PixelBox> inner_box_;
   std::optional<FeretDiameters> feret_;
 };
 
@@ -106,6 +110,10 @@ constexpr std::array kTable{
         [](Measured& m) { return smallest_circle(m.region()).radius; }},
     Row{{Feature::inner_radius, "inner_radius", "px", "radius of the largest circle inside"},
         [](Measured& m) { return inner_circle(m.region()).radius; }},
+    Row{{Feature::inner_width, "inner_width", "px", "width of the largest axis-parallel box inside"},
+        [](Measured& m) { return double(m.inner_box().width()); }},
+    Row{{Feature::inner_height, "inner_height", "px", "height of that box"},
+        [](Measured& m) { return double(m.inner_box().height()); }},
     Row{{Feature::rect2_len1, "rect2_len1", "px", "half length of the smallest rectangle at any angle"},
         [](Measured& m) { return m.rectangle().half_length; }},
     Row{{Feature::rect2_len2, "rect2_len2", "px", "half width of that rectangle"},

@@ -42,6 +42,8 @@ enum class Feature : std::uint8_t {
   min_feret,
   outer_radius,
   inner_radius,
+  inner_width,
+  inner_height,
   rect2_len1,
   rect2_len2,
   rect2_phi,
@@ -63,8 +65,8 @@ std::span<const FeatureInfo> all_features();
 std::optional<Feature> feature_named(std::string_view name);
 std::string_view to_string(Feature feature);
 
-/// One number of one region; 0 for the empty region. Costs what the feature costs: most O(R), inner_radius O(pixels of
-/// the bounding box). HALCON `region_features`. Pure, safe from any thread.
+/// One number of one region; 0 for the empty region. Costs what the feature costs: most O(R), the inner ones O(pixels
+/// of the bounding box). HALCON `region_features`. Pure, safe from any thread.
 double feature_value(const Region& region, Feature feature);
 /// Several, in the order asked for; what they have in common is computed once.
 RecycledVector<double> feature_values(const Region& region, std::span<const Feature> features);
