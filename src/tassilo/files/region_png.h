@@ -9,7 +9,7 @@
 namespace tassilo {
 
 /// The pixels of a mask that are not 0. 8-bit gray PNGs only, at most 32767 pixels wide and high, as regions are 16
-/// bit. Throws Error(name, reason). HALCON `read_region` of an image file.
+/// bit. Throws Error(name, reason).
 Region decode_png_region(std::string_view bytes, const std::string& name);
 Region read_png_region(const std::filesystem::path& file);
 
