@@ -30,7 +30,7 @@ class RunSinks {
   std::array<RecycledBuffer<PixelRun>, kColorClassCount> runs_;
   std::array<PixelRun*, kColorClassCount> end_of_{};    ///< Behind the last run.
   std::array<PixelRun*, kColorClassCount> limit_of_{};  ///< Up to here there is room for the runs of a row.
-  RecycledBuffer<std::uint16_t> begin_, end_;  ///< Of the row at work.
+  RecycledBuffer<std::uint16_t> begin_, end_;           ///< Of the row at work.
   RecycledBuffer<std::uint8_t> label_;
 };
 
