@@ -62,6 +62,14 @@ constexpr std::array kTable{
     Row{{Feature::convexity, "convexity", "", "area over that of the convex hull"}, plain<convexity>},
     Row{{Feature::rectangularity, "rectangularity", "", "agreement with the rectangle of the same moments"},
         plain<rectangularity>},
+    Row{{Feature::roundness, "roundness", "", "1 - dist_deviation / dist_mean"},
+        [](FeatureMeter& m) { return m.round().roundness; }},
+    Row{{Feature::dist_mean, "dist_mean", "px", "mean distance of the boundary from the centre"},
+        [](FeatureMeter& m) { return m.round().distance; }},
+    Row{{Feature::dist_deviation, "dist_deviation", "px", "deviation of that distance"},
+        [](FeatureMeter& m) { return m.round().deviation; }},
+    Row{{Feature::num_sides, "num_sides", "", "number of sides if it is a regular polygon"},
+        [](FeatureMeter& m) { return m.round().sides; }},
     Row{{Feature::contour_length, "contlength", "px", "length of the outer contours"}, plain<contour_length>},
     Row{{Feature::connect_num, "connect_num", "", "number of 8-connected components"},
         [](FeatureMeter& m) { return double(label_runs(m.region()).count); }},
@@ -139,6 +147,10 @@ const FeretDiameters& FeatureMeter::feret() {
 }
 const PixelBox& FeatureMeter::inner_box() {
   return once(inner_box_, [&] { return inner_rectangle(region_); });
+}
+
+const Roundness& FeatureMeter::round() {
+  return once(round_, [&] { return roundness(region_); });
 }
 
 double FeatureMeter::operator()(Feature feature) { return row_of(feature).measure(*this); }

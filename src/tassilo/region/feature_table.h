@@ -10,6 +10,7 @@
 #include "tassilo/region/features.h"
 #include "tassilo/region/feret.h"
 #include "tassilo/region/region.h"
+#include "tassilo/region/roundness.h"
 
 namespace tassilo {
 
@@ -36,6 +37,10 @@ enum class Feature : std::uint8_t {
   compactness,
   convexity,
   rectangularity,
+  roundness,
+  dist_mean,
+  dist_deviation,
+  num_sides,
   contour_length,
   connect_num,
   holes_num,
@@ -82,6 +87,7 @@ class FeatureMeter {
   const RotatedRectangle& rectangle();
   const FeretDiameters& feret();
   const PixelBox& inner_box();
+  const Roundness& round();
 
  private:
   const Region& region_;
@@ -89,6 +95,7 @@ class FeatureMeter {
   std::optional<RotatedRectangle> rectangle_;
   std::optional<FeretDiameters> feret_;
   std::optional<PixelBox> inner_box_;
+  std::optional<Roundness> round_;
 };
 
 /// One number of one region; 0 for the empty region. Costs what the feature costs: most O(R), the inner ones O(pixels
