@@ -12,9 +12,9 @@ struct Roundness {
   /// 1.4111 (distance / deviation)^0.4724: the number of sides if the region is a regular polygon; 0 for deviation 0.
   double sides = 0;
 };
-/// Of the pixels of `inner_boundary(region)`, holes included. O(R + pixels of the boundary); pure, safe from any
-/// thread. source   Haralick, "A measure for circularity of digital figures", IEEE Trans. SMC 4, 1974; HALCON's
-/// formula.
+/// Of the pixels of `inner_boundary(region)`, those of holes included. Pure, safe from any thread.
+/// cost     O(R + pixels of the boundary)
+/// source   Haralick, "A measure for circularity of digital figures", IEEE Trans. SMC 4, 1974; HALCON's formula.
 Roundness roundness(const Region& region);
 
 }  // namespace tassilo
