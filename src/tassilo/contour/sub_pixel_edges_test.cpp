@@ -29,7 +29,7 @@ struct Scene {
 Frame drawn(PixelFormat format, const Scene& scene, const std::function<double(double, double)>& depth) {
   FrameBuffer buffer = make_frame_buffer(format, kSize, kSize, ColorRange::full);
   std::mt19937 random(scene.seed);
-  std::normal_distribution<double> noise(0, scene.noise);
+  std::normal_distribution<double> noise;  // of sigma 1
   const YuvRow first = buffer.frame.view.row(0);
   for (int r = 0; r < kSize; ++r)
     for (int c = 0; c < kSize; ++c) {
@@ -41,7 +41,7 @@ Frame drawn(PixelFormat format, const Scene& scene, const std::function<double(d
           const double d = depth(c + (j + .5) / kFine - .5, r + (i + .5) / kFine - .5);
           light += .5 * std::erfc(-d / (.4 * std::numbers::sqrt2)) / (kFine * kFine);
         }
-      const double value = scene.dark + scene.contrast * light + (scene.noise > 0 ? noise(random) : 0);
+      const double value = scene.dark + scene.contrast * light + scene.noise * noise(random);
       const auto offset = first.y - buffer.planes[0];
       buffer.planes[0][offset + r * buffer.strides[0] + c * first.y_step] =
           static_cast<std::uint8_t>(std::clamp(std::lround(value), 0L, 255L));
