@@ -112,12 +112,15 @@ class PointFinder {
     const GradientRow& here = rows[1];
     const std::int16_t slope_x = here.x[column], slope_y = here.y[column];
     const bool steeper_down = std::abs(slope_y) > std::abs(slope_x);
-    const float before = log2_of(steeper_down ? rows[0].squared[column] : here.squared[column - 1]);
-    const float after = log2_of(steeper_down ? rows[2].squared[column] : here.squared[column + 1]);
+    // Addresses are chosen, not ways: which axis it is cannot be foretold.
+    const std::int32_t* const around[2][2] = {{here.squared + column - 1, here.squared + column + 1},
+                                              {rows[0].squared + column, rows[2].squared + column}};
+    const float before = log2_of(*around[steeper_down][0]), after = log2_of(*around[steeper_down][1]);
     const float offset = (after - before) / (2 * (2 * log2_of(here.squared[column]) - before - after));
-    points_.push_back({static_cast<float>(column) + (steeper_down ? 0 : offset),
-                       static_cast<float>(row) + (steeper_down ? offset : 0), static_cast<std::int16_t>(column),
-                       static_cast<std::int16_t>(row), slope_x, slope_y, here.squared[column]});
+    const float down = static_cast<float>(steeper_down) * offset;
+    points_.push_back({static_cast<float>(column) + (offset - down), static_cast<float>(row) + down,
+                       static_cast<std::int16_t>(column), static_cast<std::int16_t>(row), slope_x, slope_y,
+                       here.squared[column]});
   }
 
   const GradientKernel& kernel_;
@@ -138,7 +141,7 @@ class PointFinder {
 class Linker {
  public:
   explicit Linker(const RecycledVector<EdgePoint>& points)
-      : points_(points), ahead_(points.size()), behind_(points.size()), next_(points.size()), previous_(points.size()) {
+      : points_(points), nearest_(points.size()), next_(points.size()), previous_(points.size()) {
     if (points.empty()) return;
     top_ = points.front().row;
     first_of_row_.resize(static_cast<std::size_t>(points.back().row - top_) + 4);
@@ -149,9 +152,10 @@ class Linker {
     }
     look_at_neighbors();
     for (i = 0; i < count(); ++i) {
-      if (ahead_[index(i)].point == kNone || behind_[index(i)].point == kNone) look_farther(i);
-      link(i, ahead_[index(i)].point, ahead_[index(i)].distance);
-      link(behind_[index(i)].point, i, behind_[index(i)].distance);
+      if (nearest_[index(i)][0].point == kNone || nearest_[index(i)][1].point == kNone) look_farther(i);
+      const auto [behind, ahead] = nearest_[index(i)];
+      link(i, ahead.point, ahead.distance);
+      link(behind.point, i, behind.distance);
     }
   }
 
@@ -197,10 +201,13 @@ class Linker {
   const EdgePoint& point(std::int32_t i) const { return points_[index(i)]; }
   std::int32_t count() const { return static_cast<std::int32_t>(points_.size()); }
 
-  /// Lets `there` be what comes next to `here` along the edge, if it is nearer than what is known.
+  /// Lets `there` be what comes next to `here` along the edge, if it is nearer than what is known. Without branches:
+  /// which side it is on, and whether it is the nearest, cannot be foretold.
   void offer(std::int32_t here, std::int32_t there, bool is_ahead, float distance) {
-    Link& known = is_ahead ? ahead_[index(here)] : behind_[index(here)];
-    if (distance < known.distance) known = {there, distance};
+    Link& known = nearest_[index(here)][is_ahead];
+    const bool nearer = distance < known.distance;
+    known.point = nearer ? there : known.point;
+    known.distance = nearer ? distance : known.distance;
   }
 
   /// A pair of points that are near each other.
@@ -254,7 +261,7 @@ class Linker {
   }
 
   const RecycledVector<EdgePoint>& points_;
-  RecycledVector<Link> ahead_, behind_;  ///< The nearest.
+  RecycledVector<std::array<Link, 2>> nearest_;  ///< Behind and ahead.
   RecycledVector<Link> next_, previous_;
   int top_ = 0;
   RecycledVector<std::int32_t> first_of_row_;
