@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <string>
 
 #include "tassilo/base/contract.h"
@@ -16,6 +17,30 @@ void paint(Surface& surface, const Region& region, SurfaceKind kind) {
     const auto row = surface.kinds.begin() + std::ptrdiff_t{run.row} * surface.width;
     std::fill(row + run.begin, row + run.end, kind);
   }
+}
+
+// Eight pixels at once. Of the kinds only floor has bit 1, and of floor only lines have bit 0.
+static_assert(static_cast<int>(SurfaceKind::carpet) == 2 && static_cast<int>(SurfaceKind::line) == 3 &&
+              static_cast<int>(SurfaceKind::object) == 1 && static_cast<int>(SurfaceKind::wall) == 4);
+constexpr std::size_t kWord = 8;
+constexpr std::uint64_t kBit0 = 0x0101010101010101, kBit1 = kBit0 << 1;
+
+std::uint64_t word_at(std::span<const SurfaceKind> row, std::size_t column) {
+  std::uint64_t word;
+  std::memcpy(&word, row.data() + column, kWord);
+  return word;
+}
+
+/// First column at or behind `from` where `holds` is true; whole words where `any_holds` is false are passed over.
+template <class AnyInWord, class Holds>
+std::size_t next_where(std::size_t width, std::size_t from, AnyInWord any_holds, Holds holds) {
+  for (; from + kWord <= width; from += kWord) {
+    if (!any_holds(from)) continue;
+    while (!holds(from)) ++from;
+    return from;
+  }
+  while (from < width && !holds(from)) ++from;
+  return from;
 }
 
 /// How long a line lying on the floor at a pixel may show along row or column.
@@ -135,6 +160,40 @@ void SurfaceOptions::check() const {
   if (!(line_width > 0)) throw Error("surface.line_width", "is " + std::to_string(line_width) + ", must be > 0");
   if (!(slant >= 1)) throw Error("surface.slant", "is " + std::to_string(slant) + ", must be >= 1");
   if (blur_px < 0) throw Error("surface.blur_px", "is " + std::to_string(blur_px) + ", must be >= 0");
+}
+
+std::size_t next_line(std::span<const SurfaceKind> row, std::size_t from) {
+  return next_where(
+      row.size(), from, [&](std::size_t c) { return (word_at(row, c) & (word_at(row, c) >> 1) & kBit0) != 0; },
+      [&](std::size_t c) { return row[c] == SurfaceKind::line; });
+}
+
+std::size_t next_floor_end(std::span<const SurfaceKind> above, std::span<const SurfaceKind> below, std::size_t from) {
+  const auto floor = [](SurfaceKind kind) { return kind == SurfaceKind::carpet || kind == SurfaceKind::line; };
+  return next_where(
+      above.size(), from, [&](std::size_t c) { return (~word_at(above, c) & word_at(below, c) & kBit1) != 0; },
+      [&](std::size_t c) { return !floor(above[c]) && floor(below[c]); });
+}
+
+RecycledVector<std::uint8_t> floor_tiles(const Surface& surface) {
+  static_assert(kFloorTile == kWord);
+  const auto width = static_cast<std::size_t>(surface.width), across = (width + kWord - 1) / kWord;
+  RecycledVector<std::uint8_t> tiles;
+  tiles.reserve(across * static_cast<std::size_t>((surface.height + kFloorTile - 1) / kFloorTile));
+  RecycledVector<std::uint64_t> all(across);  // bits that all pixels of a column of the tile have
+  for (int top = 0; top < surface.height; top += kFloorTile) {
+    std::ranges::fill(all, ~std::uint64_t{0});
+    for (int r = top; r < std::min(top + kFloorTile, surface.height); ++r) {
+      const auto row = surface.row(r);
+      for (std::size_t k = 0; k < width / kWord; ++k) all[k] &= word_at(row, k * kWord);
+      if (width % kWord == 0) continue;
+      std::uint64_t rest = ~std::uint64_t{0};
+      std::memcpy(&rest, row.data() + width / kWord * kWord, width % kWord);
+      all.back() &= rest;
+    }
+    for (const std::uint64_t bits : all) tiles.push_back((bits & kBit1) == kBit1);
+  }
+  return tiles;
 }
 
 Surface find_surface(const SurfaceInput& input, const GroundMap* ground, const SurfaceOptions& options,

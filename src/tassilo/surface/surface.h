@@ -9,7 +9,7 @@
 
 namespace tassilo {
 
-/// What a pixel shows, as far as its color and its neighborhood tell.
+/// What a pixel shows, as far as its color and its neighborhood tell. Bit 1 tells what is floor: see `next_line`.
 enum class SurfaceKind : std::uint8_t {
   unknown,  ///< Neither of the following.
   object,   ///< A color that is no floor: ball, goal, robot.
@@ -32,6 +32,18 @@ struct Surface {
     return kind == SurfaceKind::carpet || kind == SurfaceKind::line;
   }
 };
+
+/// First pixel of a row at or behind `from` that shows a line; row.size() when there is none. A word of pixels at a
+/// time.
+std::size_t next_line(std::span<const SurfaceKind> row, std::size_t from);
+/// First pixel at or behind `from` that is no floor while the one below it is; above.size() when there is none.
+/// Likewise.
+std::size_t next_floor_end(std::span<const SurfaceKind> above, std::span<const SurfaceKind> below, std::size_t from);
+
+/// Tiles of kFloorTile x kFloorTile pixels that are floor throughout (1) or not (0), row by row, as many as begin
+/// inside the image: what passes over floor may pass over a tile at once.
+constexpr int kFloorTile = 8;
+RecycledVector<std::uint8_t> floor_tiles(const Surface& surface);
 
 struct SurfaceOptions {
   double line_width = 0.05;  ///< Of the field's lines. [m], > 0
