@@ -50,7 +50,7 @@ Below look_below(const View& view, int column, int row) {
   // Robots have gray parts above their colored ones: up to a twentieth of the image may lie between.
   for (int r = row + 1; r <= row + rim_px + view.segmentation.height / 20 && view.inside(column, r); ++r) {
     const ColorClass color = view.color(column, r);
-    if (is_robot_color(color) || to_string(color) == view.field.ball.color) return Below::hidden;
+    if (view.is_robot(color) || to_string(color) == view.field.ball.color) return Below::hidden;
     if (color != ColorClass::no_color) break;
   }
   return Below::other;
@@ -119,7 +119,7 @@ std::optional<End> end_of(const View& view, const Region& goal, int side, const 
     }
     bool robot = false;
     for (int k = 1; k <= 3 && view.inside(end.column + side * k, end.row); ++k)
-      robot = robot || is_robot_color(view.color(end.column + side * k, end.row));
+      robot = robot || view.is_robot(end.column + side * k, end.row);
     if (robot) {
       ++hidden;
       continue;

@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "tassilo/base/error.h"
@@ -28,6 +30,7 @@ struct Stretch {
   int black = 0;
   double foot_row = 0;  ///< Sub-pixel lower rim. [px]
   std::optional<FloorPoint> foot_on_floor;
+  double range = 0;  ///< Of the foot on the floor; 0 where that is unknown. [m]
 
   /// Its marker color: the larger one, when there is enough of it.
   Team team() const {
@@ -35,7 +38,59 @@ struct Stretch {
     if (most < 2) return Team::unknown;
     return marker[0] >= marker[1] ? Team::cyan : Team::magenta;
   }
-  double range() const { return foot_on_floor ? norm(*foot_on_floor) : 0; }
+};
+
+/// One color of a robot along a column, from row `top` to row `foot`, both included.
+struct ColumnRun {
+  int column, top, foot;
+  ColorClass color;
+};
+
+/// A region's runs along columns instead of rows, by rising foot. Only where one row differs from the next something
+/// begins or ends, so that the cost is O(height + width + runs + pixels of horizontal rims), not O(pixels).
+void add_column_runs(const Region& region, ColorClass color, int width, RecycledVector<ColumnRun>& out) {
+  const auto runs = region.runs();
+  RecycledVector<int> top(static_cast<std::size_t>(width));  // of the run that a column is in
+  std::span<const PixelRun> above;                           // runs of the row before
+  const auto compare = [&](std::span<const PixelRun> here, int row) {
+    // Merges the columns where runs of both rows begin and end; between an odd and an even one the rows differ.
+    constexpr int none = 1 << 16;
+    const auto end_at = [](std::span<const PixelRun> of, std::size_t k) {
+      return k >= 2 * of.size() ? none : k % 2 == 0 ? of[k / 2].begin : of[k / 2].end;
+    };
+    bool differ = false;
+    int from = 0;
+    for (std::size_t i = 0, j = 0; i < 2 * above.size() || j < 2 * here.size();) {
+      const int a = end_at(above, i), b = end_at(here, j), column = std::min(a, b);
+      // Between here and the last end: which of the two is inside tells whether runs begin or end.
+      if (differ && i % 2 == 0)
+        for (int c = from; c < column; ++c) top[static_cast<std::size_t>(c)] = row;
+      else if (differ)
+        for (int c = from; c < column; ++c) out.push_back({c, top[static_cast<std::size_t>(c)], row - 1, color});
+      i += a == column;
+      j += b == column;
+      differ = i % 2 != j % 2;
+      from = column;
+    }
+    above = here;
+  };
+  for (std::size_t i = 0; i < runs.size();) {
+    const int row = runs[i].row;
+    std::size_t end = i;
+    while (end < runs.size() && runs[end].row == row) ++end;
+    if (!above.empty() && above.front().row < row - 1) compare({}, above.front().row + 1);
+    compare(runs.subspan(i, end - i), row);
+    i = end;
+  }
+  if (!above.empty()) compare({}, above.front().row + 1);
+}
+
+/// What stays the same for all columns of a frame.
+struct Sight {
+  const View& view;
+  const RobotOptions& options;
+  std::optional<ColorClass> ball = color_class_from(view.field.ball.color);
+  double furthest = longest_distance(view.field);
 };
 
 /// How many rows a field line lying below a pixel may cover.
@@ -48,64 +103,101 @@ int line_rows(const View& view, int column, int row) {
   return static_cast<int>(slant * view.field.line_width / std::max(1e-4, distance(*here, *below)));
 }
 
-Under look_under(const View& view, int column, int foot, const RobotOptions& options) {
+Under look_under(const Sight& sight, int column, int foot) {
+  const View& view = sight.view;
   // A line that touches the robot has no carpet on this side, so the surface cannot know it from a wall.
-  const int reach = 1 + options.gap_px + line_rows(view, column, foot);
+  int reach = 1 + sight.options.gap_px;
+  bool further = true;
   for (int r = foot + 1; r <= foot + reach; ++r) {
     if (!view.inside(column, r)) return Under::border;
     if (view.surface.is_floor(column, r)) return Under::floor;
-    if (to_string(view.color(column, r)) == view.field.ball.color) return Under::ball;
+    if (view.color(column, r) == sight.ball) return Under::ball;
+    if (r == foot + reach && further) {
+      reach += line_rows(view, column, foot);
+      further = false;
+    }
   }
   return Under::other;
 }
 
-void place_foot(const View& view, Stretch& stretch) {
+void place_foot(const Sight& sight, Stretch& stretch) {
   stretch.foot_row = stretch.foot + 0.5;
   if (stretch.under == Under::floor) {
     const PixelPoint rim{static_cast<double>(stretch.column), stretch.foot_row};
-    if (const auto edge = find_edge(view.frame, {.at = rim, .outward = {0, 1}, .reach_px = 2.5}))
+    if (const auto edge = find_edge(sight.view.frame, {.at = rim, .outward = {0, 1}, .reach_px = 2.5}))
       stretch.foot_row = edge->y;
   }
-  if (view.optics != nullptr)
-    stretch.foot_on_floor = view.optics->camera.floor_point({static_cast<double>(stretch.column), stretch.foot_row}, 0,
-                                                            2 * longest_distance(view.field));
+  if (sight.view.optics == nullptr) return;
+  const Optics& optics = *sight.view.optics;
+  if (const auto ray = optics.ray({static_cast<double>(stretch.column), stretch.foot_row}))
+    stretch.foot_on_floor = optics.camera.floor_along(*ray, 0, 2 * sight.furthest);
+  if (stretch.foot_on_floor) stretch.range = norm(*stretch.foot_on_floor);
 }
 
-/// All stretches of one column that are high enough, from the bottom up.
-void stretches_of(const View& view, int column, const RobotOptions& options, RecycledVector<Stretch>& out) {
-  int r = view.segmentation.height - 1;
-  while (r >= 0) {
-    if (!is_robot_color(view.color(column, r))) {
-      --r;
-      continue;
-    }
+/// Do robots go on between two runs of a column? Carpet ends them, an unknown rim between two of their colors does not.
+bool is_rim(const Sight& sight, const ColumnRun& upper, const ColumnRun& lower) {
+  if (lower.top - upper.foot - 1 > sight.options.gap_px) return false;
+  for (int r = upper.foot + 1; r < lower.top; ++r)
+    if (sight.view.color(upper.column, r) != ColorClass::no_color) return false;
+  return true;
+}
+
+/// All stretches of one column that are high enough, from the bottom up. `runs` of the column, from the top down.
+void stretches_of(const Sight& sight, std::span<const ColumnRun> runs, RecycledVector<Stretch>& out) {
+  for (std::size_t next = runs.size(); next > 0;) {
     Stretch stretch;
-    stretch.column = column;
-    stretch.foot = r;
-    int gap = 0;
-    for (; r >= 0 && gap <= options.gap_px; --r) {
-      const ColorClass color = view.color(column, r);
-      if (!is_robot_color(color)) {
-        // Carpet ends a robot, an unknown rim between two of its colors does not.
-        if (color != ColorClass::no_color) break;
-        ++gap;
-        continue;
-      }
-      gap = 0;
-      stretch.top = r;
-      stretch.black += color == ColorClass::black;
-      stretch.marker[0] += color == ColorClass::cyan;
-      stretch.marker[1] += color == ColorClass::magenta;
-    }
-    if (stretch.foot - stretch.top + 1 < options.min_rows) continue;
-    stretch.under = look_under(view, column, stretch.foot, options);
+    stretch.column = runs[next - 1].column;
+    stretch.foot = runs[next - 1].foot;
+    do {
+      const ColumnRun& run = runs[--next];
+      const int pixels = run.foot - run.top + 1;
+      stretch.top = run.top;
+      if (run.color == ColorClass::cyan)
+        stretch.marker[0] += pixels;
+      else if (run.color == ColorClass::magenta)
+        stretch.marker[1] += pixels;
+      else
+        stretch.black += pixels;
+    } while (next > 0 && is_rim(sight, runs[next - 1], runs[next]));
+    if (stretch.foot - stretch.top + 1 < sight.options.min_rows) continue;
+    stretch.under = look_under(sight, stretch.column, stretch.foot);
     if (stretch.under == Under::other) continue;
-    place_foot(view, stretch);
-    if (view.optics != nullptr && stretch.under != Under::border &&
-        (!stretch.foot_on_floor || stretch.range() > longest_distance(view.field)))
+    place_foot(sight, stretch);
+    if (sight.view.optics != nullptr && stretch.under != Under::border &&
+        (!stretch.foot_on_floor || stretch.range > sight.furthest))
       continue;
     out.push_back(stretch);
   }
+}
+
+/// The robots' colors along all columns, from left to right and in each column from the top down.
+struct Columns {
+  RecycledVector<ColumnRun> runs;
+  RecycledVector<std::size_t> first;  ///< Of each column, and one more.
+
+  std::span<const ColumnRun> of(int column) const {
+    const auto c = static_cast<std::size_t>(column);
+    return std::span(runs).subspan(first[c], first[c + 1] - first[c]);
+  }
+};
+
+Columns columns_of(const View& view) {
+  RecycledVector<ColumnRun> found;
+  for (const ColorClass color : kColorClasses)
+    if (view.is_robot(color)) add_column_runs(view.segmentation.of(color), color, view.segmentation.width, found);
+  Columns columns;
+  columns.first.resize(static_cast<std::size_t>(view.segmentation.width) + 1);
+  for (const ColumnRun& run : found) ++columns.first[static_cast<std::size_t>(run.column) + 1];
+  std::partial_sum(columns.first.begin(), columns.first.end(), columns.first.begin());
+  columns.runs.resize(found.size());
+  RecycledVector<std::size_t> next(columns.first);
+  for (const ColumnRun& run : found) columns.runs[next[static_cast<std::size_t>(run.column)]++] = run;
+  for (int c = 0; c < view.segmentation.width; ++c) {
+    const auto from = columns.runs.begin() + static_cast<std::ptrdiff_t>(columns.first[static_cast<std::size_t>(c)]);
+    const auto to = columns.runs.begin() + static_cast<std::ptrdiff_t>(columns.first[static_cast<std::size_t>(c) + 1]);
+    std::ranges::sort(from, to, {}, &ColumnRun::foot);
+  }
+  return columns;
 }
 
 bool belong_together(const View& view, const Stretch& a, const Stretch& b, const RobotOptions& options) {
@@ -115,7 +207,7 @@ bool belong_together(const View& view, const Stretch& a, const Stretch& b, const
   if (a.under != Under::floor || b.under != Under::floor) return true;
   if (std::abs(a.foot_row - b.foot_row) <= 2.0) return true;
   if (view.optics == nullptr) return std::abs(a.foot_row - b.foot_row) <= 0.02 * view.segmentation.height + 2;
-  return std::abs(a.range() - b.range()) <= options.max_step;
+  return std::abs(a.range - b.range) <= options.max_step;
 }
 
 /// Outline point nearest to us, from feet smoothed over neighboring columns; nothing when no foot is seen.
@@ -263,9 +355,12 @@ RecycledVector<RobotSeen> find_robots(const View& view, const RobotOptions& opti
   RecycledVector<RecycledVector<Stretch>> chains;
   RecycledVector<std::size_t> open;  // chains that may still grow
   RecycledVector<Stretch> column;
+  const Sight sight{view, options};
+  const Columns columns = columns_of(view);
   for (int c = 0; c < view.segmentation.width; ++c) {
     column.clear();
-    stretches_of(view, c, options, column);
+    stretches_of(sight, columns.of(c), column);
+    if (column.empty()) continue;
     std::erase_if(open, [&](std::size_t k) { return chains[k].back().column < c - 1 - options.gap_px; });
     for (const Stretch& stretch : column) {
       // The chain whose foot is nearest, not yet continued in this column.
