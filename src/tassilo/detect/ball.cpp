@@ -250,7 +250,10 @@ std::optional<SphereFit> fit_segment(const View& view, const Attempt& attempt, c
   if (!guess) return std::nullopt;
   const auto coarse_rays = rays_of(view, attempt, rim);
   if (coarse_rays.size() < 3) return std::nullopt;
-  SphereFitOptions fitting{.radius = view.field.ball.radius, .edge_sigma_px = 1.0, .iterations = 20};
+  SphereFitOptions fitting{.radius = view.field.ball.radius,
+                           .edge_sigma_px = 1.0,
+                           .iterations = 20,
+                           .furthest = 2 * longest_distance(view.field)};
   auto fit = fit_resting_sphere(attempt.camera, coarse_rays, *guess, fitting);
   if (!fit) return std::nullopt;
   auto disc = project_disc(attempt.camera, fit->sphere);

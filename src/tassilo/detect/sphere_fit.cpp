@@ -188,6 +188,7 @@ std::optional<SphereFit> fit_resting_sphere(const MountedCamera& camera, std::sp
     if (!step.allFinite()) return std::nullopt;
     // A step longer than half the distance leaves the region where the outline is nearly linear.
     const double range = std::hypot(state[0] - eye.x, state[1] - eye.y);
+    if (range > options.furthest) return std::nullopt;
     const double length = std::hypot(step[0], step[1]);
     if (length > 0.5 * range) step *= 0.5 * range / length;
     state += step;

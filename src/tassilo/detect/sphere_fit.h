@@ -54,6 +54,8 @@ struct SphereFitOptions {
   Interval radius;             ///< Prior of the radius: uniform between both. [m]
   double edge_sigma_px = 0.5;  ///< Of one edge point across the outline. [px]
   int iterations = 8;
+  /// Where the fit may walk to on its way, from the eye; what is no ball on the floor often fits best at the horizon.
+  double furthest = 1e3;  ///< [m], > 0
 };
 
 /// Fits a sphere that rests on the floor to points on its outline, by Gauss-Newton on their distance from the outline
