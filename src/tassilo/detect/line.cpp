@@ -89,25 +89,19 @@ RecycledVector<PixelPoint> line_middles(const View& view) {
       ++n;
     return n;
   };
-  for (int r = 0; r < surface.height; ++r) {
-    const auto row = surface.row(r);
-    for (std::size_t at = 0; (at = next_line(row, at)) < row.size();) {
-      const int begin = static_cast<int>(at);
-      while (at < row.size() && row[at] == SurfaceKind::line) ++at;
-      const int length = static_cast<int>(at) - begin;
-      const int middle = begin + length / 2;
-      if (length <= 1 + rows_from(middle, r, -1, length) + rows_from(middle, r, 1, length)) {
-        middles.push_back({begin + (length - 1) / 2.0, static_cast<double>(r)});
-        continue;
-      }
-      // Wider than high: the stretch along each column counts, once, where it begins.
-      for (int c = begin; c < begin + length; ++c) {
-        if (rows_from(c, r, -1, 1) == 1) continue;
-        const int rows = 1 + rows_from(c, r, 1, length);
-        if (rows < length) middles.push_back({static_cast<double>(c), r + (rows - 1) / 2.0});
-      }
+  for_each_line_run(surface, [&](int r, int begin, int end) {
+    const int length = end - begin, middle = begin + length / 2;
+    if (length <= 1 + rows_from(middle, r, -1, length) + rows_from(middle, r, 1, length)) {
+      middles.push_back({begin + (length - 1) / 2.0, static_cast<double>(r)});
+      return;
     }
-  }
+    // Wider than high: the stretch along each column counts, once, where it begins.
+    for (int c = begin; c < end; ++c) {
+      if (rows_from(c, r, -1, 1) == 1) continue;
+      const int rows = 1 + rows_from(c, r, 1, length);
+      if (rows < length) middles.push_back({static_cast<double>(c), r + (rows - 1) / 2.0});
+    }
+  });
   return middles;
 }
 
@@ -120,17 +114,15 @@ RecycledVector<PixelPoint> wall_feet(const View& view) {
   const auto is_wall = [&](int c, int r) {
     return white ? view.surface.at(c, r) == SurfaceKind::wall : view.color(c, r) == *wall_color;
   };
-  for (int r = view.surface.height - 2; r >= 5; --r) {
-    const auto above = view.surface.row(r), below = view.surface.row(r + 1);
-    for (std::size_t at = 0; (at = next_floor_end(above, below, at)) < above.size(); ++at) {
-      const int c = static_cast<int>(at);
-      // r is the first pixel above the carpet: a rim of two pixels, then wall.
-      int first = r;
-      while (first > r - 3 && !is_wall(c, first)) --first;
-      if (first > r - 3 && is_wall(c, first - 1) && is_wall(c, first - 2))
-        feet.push_back({static_cast<double>(c), (r + first) / 2.0 + 0.5});
-    }
-  }
+  for_each_floor_end(view.surface, [&](int c, int r) {
+    // r is the first pixel above the carpet: a rim of two pixels, then wall.
+    constexpr int rim = 2, wall = 3;
+    if (r < rim + wall) return;
+    int first = r;
+    while (first > r - 3 && !is_wall(c, first)) --first;
+    if (first > r - 3 && is_wall(c, first - 1) && is_wall(c, first - 2))
+      feet.push_back({static_cast<double>(c), (r + first) / 2.0 + 0.5});
+  });
   return feet;
 }
 

@@ -225,10 +225,12 @@ std::optional<PixelPoint> nearest_foot(const View& view, const RecycledVector<St
     RecycledVector<double> rows;
     for (std::size_t k = from; k < to; ++k) rows.push_back(feet[k].y);
     const PixelPoint smooth{feet[i].x, median(std::move(rows))};
-    const auto point = view.optics->camera.floor_point(smooth);
-    if (point && (!best || norm(*point) < best_range)) {
+    const auto ray = view.optics->ray(smooth);
+    const auto point = ray ? view.optics->camera.floor_along(*ray) : std::nullopt;
+    const double range = point ? norm(*point) : 0;
+    if (point && (!best || range < best_range)) {
       best = smooth;
-      best_range = norm(*point);
+      best_range = range;
     }
   }
   return best;

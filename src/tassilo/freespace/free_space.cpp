@@ -5,6 +5,7 @@
 #include <numbers>
 #include <string>
 
+#include "tassilo/base/contract.h"
 #include "tassilo/base/error.h"
 #include "tassilo/geometry/angle.h"
 
@@ -45,13 +46,14 @@ SectorMap::Ray follow(const MountedCamera& camera, FloorPoint origin, double ang
 
 /// Tells which steps share a tile.
 void add_stretches(SectorMap::Ray& ray, int width) {
-  const auto across = static_cast<std::uint32_t>((width + kFloorTile - 1) / kFloorTile);
+  const auto across = static_cast<std::uint32_t>((width + Surface::kTile - 1) / Surface::kTile);
   for (const SectorMap::Step& step : ray.steps) {
-    const auto tile = static_cast<std::uint32_t>(step.row / kFloorTile) * across +
-                      static_cast<std::uint32_t>(step.column / kFloorTile);
+    const auto tile = static_cast<std::uint32_t>(step.row / Surface::kTile) * across +
+                      static_cast<std::uint32_t>(step.column / Surface::kTile);
     if (ray.stretches.empty() || ray.stretches.back().tile != tile)
-      ray.stretches.push_back({tile, ray.stretches.empty() ? 0 : ray.stretches.back().end});
+      ray.stretches.push_back({tile, ray.stretches.empty() ? 0 : ray.stretches.back().end, 0});
     ++ray.stretches.back().end;
+    ray.stretches.back().range = step.range;
   }
 }
 
@@ -63,7 +65,7 @@ struct RayEnd {
 class Walker {
  public:
   Walker(const SectorMap& map, const Surface& surface, std::span<const Ball> balls)
-      : map_(map), surface_(surface), tiles_(floor_tiles(surface)), balls_(balls) {}
+      : map_(map), surface_(surface), balls_(balls) {}
 
   RayEnd operator()(const SectorMap::Ray& ray) const {
     if (ray.steps.empty()) return {};
@@ -72,7 +74,13 @@ class Walker {
     int odd = 0;               // pixels that are neither floor nor ball since the last floor
     std::size_t next = 0;
     for (const SectorMap::Stretch& stretch : ray.stretches) {
-      if (tiles_[stretch.tile] != 0) next = stretch.end - 1;  // all floor: its last step tells all
+      if ((surface_.tiles[stretch.tile] & Surface::all_floor) != 0) {
+        free_until = stretch.range;
+        behind_ball = false;
+        odd = 0;
+        next = stretch.end;
+        continue;
+      }
       for (; next < stretch.end; ++next) {
         const SectorMap::Step& step = ray.steps[next];
         if (surface_.is_floor(step.column, step.row)) {
@@ -103,7 +111,6 @@ class Walker {
 
   const SectorMap& map_;
   const Surface& surface_;
-  RecycledVector<std::uint8_t> tiles_;
   std::span<const Ball> balls_;
 };
 
@@ -150,6 +157,8 @@ SectorMap::SectorMap(const MountedCamera& camera, const FreeSpaceOptions& option
 }
 
 FreeSpace find_free_space(const SectorMap& map, const Surface& surface, std::span<const Ball> balls) {
+  expects(surface.tiles.size() == static_cast<std::size_t>(surface.tiles_across() * surface.tiles_down()),
+          "free space: the surface's tiles are up to date");
   FreeSpace space;
   space.states.reserve(map.sectors());
   space.ranges.reserve(map.sectors());

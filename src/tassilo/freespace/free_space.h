@@ -33,10 +33,11 @@ class SectorMap {
     std::int16_t column, row;
     float range;
   };
-  /// Steps that follow one another within one of `floor_tiles`.
+  /// Steps that follow one another within one of the surface's tiles.
   struct Stretch {
     std::uint32_t tile;
     std::uint32_t end;  ///< One behind its last step.
+    float range;        ///< Of its last step. [m]
   };
   struct Ray {
     RecycledVector<Step> steps;         ///< Empty where no floor of this direction is in view.

@@ -26,6 +26,7 @@ struct Known {
                            paint.u != test::kWhite.u;
         surface.kinds.push_back(floor ? SurfaceKind::carpet : SurfaceKind::object);
       }
+    surface.update_tiles();
   }
   Surface surface;
 };

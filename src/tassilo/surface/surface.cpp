@@ -25,47 +25,36 @@ static_assert(static_cast<int>(SurfaceKind::carpet) == 2 && static_cast<int>(Sur
 constexpr std::size_t kWord = 8;
 constexpr std::uint64_t kBit0 = 0x0101010101010101, kBit1 = kBit0 << 1;
 
-std::uint64_t word_at(std::span<const SurfaceKind> row, std::size_t column) {
-  std::uint64_t word;
-  std::memcpy(&word, row.data() + column, kWord);
-  return word;
-}
-
-/// First column at or behind `from` where `holds` is true; whole words where `any_holds` is false are passed over.
-template <class AnyInWord, class Holds>
-std::size_t next_where(std::size_t width, std::size_t from, AnyInWord any_holds, Holds holds) {
-  for (; from + kWord <= width; from += kWord) {
-    if (!any_holds(from)) continue;
-    while (!holds(from)) ++from;
-    return from;
-  }
-  while (from < width && !holds(from)) ++from;
-  return from;
-}
-
 /// How long a line lying on the floor at a pixel may show along row or column.
 class LineSize {
  public:
   LineSize(const SurfaceInput& input, const GroundMap* ground, const SurfaceOptions& options)
-      : input_(input), ground_(ground), options_(options) {}
+      : input_(input),
+        ground_(ground),
+        rims_(2.0 * options.blur_px),
+        widest_(options.slant * options.line_width),
+        widest_px_(std::max(3.0, input.width / 40.0)) {}
 
-  double along_row(int c, int r) const { return longest(c, r, 1, 0); }
-  double along_column(int c, int r) const { return longest(c, r, 0, 1); }
-
- private:
-  double longest(int c, int r, int dc, int dr) const {
-    const double rims = 2.0 * options_.blur_px;
-    if (ground_ == nullptr) return std::max(3.0, input_.width / 40.0) + rims;
+  /// May `pixels` along the row (or the column) around (c, r) be a line, `wider` times as wide as one alone?
+  bool holds(int c, int r, bool along_row, double pixels, double wider) const {
+    if (ground_ == nullptr) return pixels <= wider * (widest_px_ + rims_);
+    int dc = along_row ? 1 : 0, dr = along_row ? 0 : 1;
     if (c + dc >= input_.width) dc = -dc;
     if (r + dr >= input_.height) dr = -dr;
     const auto here = ground_->at(c, r), beside = ground_->at(c + dc, r + dr);
-    if (!here || !beside) return 0;  // above the horizon lies no line
-    return options_.slant * options_.line_width / std::max(1e-6, distance(*here, *beside)) + rims;
+    if (!here || !beside) return false;  // above the horizon lies no line
+    const double blurred = pixels - wider * rims_;
+    if (blurred <= 0) return true;
+    const FloorPoint pixel = *beside - *here;
+    return blurred * blurred * dot(pixel, pixel) <= wider * wider * widest_ * widest_;
   }
 
+ private:
   const SurfaceInput& input_;
   const GroundMap* ground_;
-  const SurfaceOptions& options_;
+  double rims_;       ///< Of both sides. [px]
+  double widest_;     ///< [m]
+  double widest_px_;  ///< Without calibration.
 };
 
 /// A stretch of pixels along a row or a column with carpet before and after it.
@@ -114,8 +103,8 @@ class Judge {
 
   bool is_narrow(const Gap& gap, double wider) const {
     const int middle = gap.length / 2;
-    return gap.length <= wider * (gap.along_row ? size_.along_row(gap.column + middle, gap.row)
-                                                : size_.along_column(gap.column, gap.row + middle));
+    return gap.along_row ? size_.holds(gap.column + middle, gap.row, true, gap.length, wider)
+                         : size_.holds(gap.column, gap.row + middle, false, gap.length, wider);
   }
 
   void mark(const Gap& gap) {
@@ -162,38 +151,39 @@ void SurfaceOptions::check() const {
   if (blur_px < 0) throw Error("surface.blur_px", "is " + std::to_string(blur_px) + ", must be >= 0");
 }
 
-std::size_t next_line(std::span<const SurfaceKind> row, std::size_t from) {
-  return next_where(
-      row.size(), from, [&](std::size_t c) { return (word_at(row, c) & (word_at(row, c) >> 1) & kBit0) != 0; },
-      [&](std::size_t c) { return row[c] == SurfaceKind::line; });
-}
-
-std::size_t next_floor_end(std::span<const SurfaceKind> above, std::span<const SurfaceKind> below, std::size_t from) {
-  const auto floor = [](SurfaceKind kind) { return kind == SurfaceKind::carpet || kind == SurfaceKind::line; };
-  return next_where(
-      above.size(), from, [&](std::size_t c) { return (~word_at(above, c) & word_at(below, c) & kBit1) != 0; },
-      [&](std::size_t c) { return !floor(above[c]) && floor(below[c]); });
-}
-
-RecycledVector<std::uint8_t> floor_tiles(const Surface& surface) {
-  static_assert(kFloorTile == kWord);
-  const auto width = static_cast<std::size_t>(surface.width), across = (width + kWord - 1) / kWord;
-  RecycledVector<std::uint8_t> tiles;
-  tiles.reserve(across * static_cast<std::size_t>((surface.height + kFloorTile - 1) / kFloorTile));
-  RecycledVector<std::uint64_t> all(across);  // bits that all pixels of a column of the tile have
-  for (int top = 0; top < surface.height; top += kFloorTile) {
+void Surface::update_tiles() {
+  static_assert(kTile == kWord);
+  const auto columns = static_cast<std::size_t>(width), across = static_cast<std::size_t>(tiles_across());
+  tiles.clear();
+  tiles.reserve(across * static_cast<std::size_t>(tiles_down()));
+  /// Bits that all, some pixels of a column of a tile have; bit 0 of `line` where some are lines.
+  RecycledVector<std::uint64_t> all(across), some(across), line(across);
+  for (int top = 0; top < height; top += kTile) {
     std::ranges::fill(all, ~std::uint64_t{0});
-    for (int r = top; r < std::min(top + kFloorTile, surface.height); ++r) {
-      const auto row = surface.row(r);
-      for (std::size_t k = 0; k < width / kWord; ++k) all[k] &= word_at(row, k * kWord);
-      if (width % kWord == 0) continue;
-      std::uint64_t rest = ~std::uint64_t{0};
-      std::memcpy(&rest, row.data() + width / kWord * kWord, width % kWord);
-      all.back() &= rest;
+    std::ranges::fill(some, 0);
+    std::ranges::fill(line, 0);
+    for (int r = top; r < std::min(top + kTile, height); ++r) {
+      const SurfaceKind* const from = row(r).data();
+      for (std::size_t k = 0; k < columns / kWord; ++k) {
+        std::uint64_t word;
+        std::memcpy(&word, from + k * kWord, kWord);
+        all[k] &= word;
+        some[k] |= word;
+        line[k] |= word & (word >> 1);
+      }
+      // What is beside the image neither keeps a tile from being all floor nor adds anything.
+      for (std::size_t c = columns / kWord * kWord; c < columns; ++c) {
+        const auto kind = static_cast<std::uint64_t>(from[c]);
+        all.back() &= kind * kBit0;
+        some.back() |= kind;
+        line.back() |= kind & (kind >> 1);
+      }
     }
-    for (const std::uint64_t bits : all) tiles.push_back((bits & kBit1) == kBit1);
+    for (std::size_t k = 0; k < across; ++k)
+      tiles.push_back(static_cast<std::uint8_t>(((all[k] & kBit1) == kBit1 ? all_floor : 0) |
+                                                ((some[k] & kBit1) != 0 ? some_floor : 0) |
+                                                ((line[k] & kBit0) != 0 ? some_line : 0)));
   }
-  return tiles;
 }
 
 Surface find_surface(const SurfaceInput& input, const GroundMap* ground, const SurfaceOptions& options,
@@ -218,6 +208,7 @@ Surface find_surface(const SurfaceInput& input, const GroundMap* ground, const S
   for (const Gap& gap : gaps)
     if (!judge.has_object(gap) && !judge.accept(gap)) wide.push_back(gap);
   for (const Gap& gap : wide) judge.accept_between_lines(gap);
+  surface.update_tiles();
   return surface;
 }
 
