@@ -305,16 +305,18 @@ class CirclePoints {
   std::size_t source(std::size_t i) const { return source_[i]; }  ///< Its place among the points given.
   FloorPoint floor(std::size_t i) const { return {columns_[0][i], columns_[1][i]}; }
 
-  /// How many lie within `tolerance_px` of the circle around `center`.
+  /// How many lie within `tolerance_px` of the circle around `center`; without a root, which would keep the compiler
+  /// from comparing several at once: near the circle length - radius is (length^2 - radius^2) / (2 radius).
   std::size_t count(FloorPoint center, double tolerance_px) const {
     const auto cx = static_cast<float>(center.x), cy = static_cast<float>(center.y);
-    const auto radius = static_cast<float>(radius_), tolerance = static_cast<float>(tolerance_px);
+    const auto square_radius = static_cast<float>(radius_ * radius_);
+    const auto most = static_cast<float>(4 * radius_ * radius_ * tolerance_px * tolerance_px);
     std::int32_t count = 0;
     for (std::size_t i = 0; i < size(); ++i) {
       const float x = columns_[0][i] - cx, y = columns_[1][i] - cy;
       const float right = x * columns_[2][i] + y * columns_[3][i], below = x * columns_[4][i] + y * columns_[5][i];
-      const float square = x * x + y * y, off = square - radius * std::sqrt(square);
-      count += off * off <= tolerance * tolerance * (right * right + below * below);
+      const float square = x * x + y * y, off = square - square_radius;
+      count += off * off * square <= most * (right * right + below * below);
     }
     return static_cast<std::size_t>(count);
   }
