@@ -79,3 +79,5 @@ BENCHMARK(BM_FrameToScene)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace tassilo
+
+BENCHMARK_MAIN();

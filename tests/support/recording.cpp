@@ -1,5 +1,7 @@
 #include "support/recording.h"
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <variant>
 
@@ -18,13 +20,36 @@ const std::filesystem::path kData = TASSILO_SOURCE_DIR "/data/msl98";
 
 }  // namespace
 
-ColorTable trained_colors(const std::string& samples_file) {
+Frame resized(const Frame& frame, int width, int height, AddedNoise noise, std::mt19937& random) {
+  FrameBuffer buffer = make_frame_buffer(PixelFormat::yuv422p, width, height, frame.range);
+  std::normal_distribution<double> normal;
+  const auto noisy = [&](int value, double sigma) {
+    if (sigma == 0) return static_cast<std::uint8_t>(value);
+    return static_cast<std::uint8_t>(std::clamp(std::lround(value + sigma * normal(random)), 0l, 255l));
+  };
+  const FrameView& from = frame.view;
+  for (int r = 0; r < height; ++r) {
+    const int from_row = r * from.height() / height;
+    for (int c = 0; c < width; ++c) {
+      const int from_column = c * from.width() / width;
+      buffer.planes[0][r * buffer.strides[0] + c] = noisy(from.y(from_column, from_row), noise.y);
+      if (c % 2 != 0) continue;
+      buffer.planes[1][r * buffer.strides[1] + c / 2] = noisy(from.u(from_column, from_row), noise.uv);
+      buffer.planes[2][r * buffer.strides[2] + c / 2] = noisy(from.v(from_column, from_row), noise.uv);
+    }
+  }
+  return buffer.frame;
+}
+
+ColorTable trained_colors(const std::string& samples_file, AddedNoise noise) {
+  std::mt19937 random(3);
   std::vector<ColorSample> samples;
   ColorRange range = ColorRange::limited;
   for (const TrainingSample& sample : read_samples(kData / samples_file)) {
     SourceOptions options;
     options.location = sample.image.string();
-    const Frame frame = read_frame(options, sample.frame);
+    Frame frame = read_frame(options, sample.frame);
+    if (noise.y > 0) frame = resized(frame, frame.view.width(), frame.view.height(), noise, random);
     range = frame.range;
     Region region;
     if (const auto* rectangle = std::get_if<PixelBox>(&sample.shape)) region = Region::from_box(*rectangle);

@@ -13,7 +13,8 @@
 #endif
 #endif
 #ifdef TASSILO_ASAN
-#include <sanitizer/asan_interface.h>
+extern "C" void __asan_poison_memory_region(void const volatile* address, std::size_t bytes);
+extern "C" void __asan_unpoison_memory_region(void const volatile* address, std::size_t bytes);
 #endif
 
 namespace tassilo {

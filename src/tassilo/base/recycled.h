@@ -1,8 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <new>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace tassilo {
@@ -41,5 +44,36 @@ struct RecyclingAllocator {
 /// A std::vector for what lives as long as a frame.
 template <class T>
 using RecycledVector = std::vector<T, RecyclingAllocator<T>>;
+
+/// Room for values that are written before they are read: recycled memory, not initialized.
+template <class T>
+class RecycledBuffer {
+ public:
+  static_assert(std::is_trivially_copyable_v<T>);
+
+  RecycledBuffer() = default;
+  explicit RecycledBuffer(std::size_t size)
+      : data_(RecyclingAllocator<T>().allocate(std::max<std::size_t>(size, 1))), size_(size) {}
+  RecycledBuffer(RecycledBuffer&& other) noexcept
+      : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
+  RecycledBuffer& operator=(RecycledBuffer&& other) noexcept {
+    std::swap(data_, other.data_);
+    std::swap(size_, other.size_);
+    return *this;
+  }
+  ~RecycledBuffer() {
+    if (data_ != nullptr) RecyclingAllocator<T>().deallocate(data_, std::max<std::size_t>(size_, 1));
+  }
+
+  T* data() { return data_; }
+  const T* data() const { return data_; }
+  std::size_t size() const { return size_; }
+  T& operator[](std::size_t i) { return data_[i]; }
+  const T& operator[](std::size_t i) const { return data_[i]; }
+
+ private:
+  T* data_ = nullptr;
+  std::size_t size_ = 0;
+};
 
 }  // namespace tassilo

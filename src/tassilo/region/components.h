@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstdint>
+
 #include "tassilo/base/recycled.h"
+#include "tassilo/geometry/point.h"
 #include "tassilo/region/region.h"
 
 namespace tassilo {
@@ -24,6 +27,18 @@ struct RunLabels {
 /// cost     O(R a(R)) for R runs, two allocations; safe from any thread.
 /// source   He, Chao, Suzuki, "A run-based two-scan labeling algorithm", IEEE TIP 17(5), 2008.
 RunLabels label_runs(const Region& region, Connectivity connectivity = Connectivity::eight);
+
+/// What one look at each run tells of a component.
+struct ComponentFeatures {
+  std::int64_t area = 0;  ///< Number of pixels. [px^2]
+  PixelPoint center;      ///< Mean of the pixel centres. [px]
+  PixelBox box;           ///< Smallest axis-parallel box. [px]
+};
+/// Area, centre and box of every component, in the order of `label_runs`, without making the components: what most of
+/// them, being noise, are judged by. HALCON `connection`, then `area_center` and `smallest_rectangle1`; OpenCV
+/// `connectedComponentsWithStats`. O(R a(R)), about 5 ns a run.
+RecycledVector<ComponentFeatures> component_features(const Region& region,
+                                                     Connectivity connectivity = Connectivity::eight);
 
 /// The connected components, each as a region, in the order of their first runs; every run is in exactly one.
 /// None for the empty region. HALCON `connection`. Cost as `label_runs`, and one allocation a component.

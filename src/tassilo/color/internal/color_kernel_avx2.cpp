@@ -1,0 +1,151 @@
+// AVX2: one memory access a chroma cell, all else 32 pixels an instruction. Only functions marked with TASSILO_AVX2 may
+// hold such instructions: nothing that other sources share is compiled for this machine.
+
+#if defined(__x86_64__)
+
+#include <immintrin.h>
+
+#include <array>
+
+#include "tassilo/color/internal/color_kernel.h"
+
+#define TASSILO_AVX2 __attribute__((target("avx2,bmi,bmi2,popcnt,lzcnt")))
+
+namespace tassilo {
+namespace {
+
+TASSILO_AVX2 inline __m256i load(const std::uint8_t* from) {
+  return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
+}
+TASSILO_AVX2 inline __m256i twice(const std::array<std::uint8_t, 16>& table) {
+  return _mm256_broadcastsi128_si256(_mm_loadu_si128(reinterpret_cast<const __m128i*>(table.data())));
+}
+
+/// Each cell is a memory access: AVX2 has no table of 64 bytes, and its gather is no faster.
+void claims_of(const KernelTable& table, const YuvRow& row, int pairs, std::uint8_t* claims) {
+  plain_color_kernel.claims(table, row, pairs, claims);
+}
+
+TASSILO_AVX2 void labels_of(const KernelTable& table, const std::uint8_t* claims, const YuvRow& row, int width,
+                            std::uint8_t* labels) {
+  const KernelTable::HalfBytes& halves = table.half_bytes;
+  const __m256i whole = twice(halves.whole), first = twice(halves.first), last = twice(halves.last),
+                both = twice(halves.both), from = twice(halves.from), to = twice(halves.to);
+  const __m256i label_low = twice(halves.label_of_low), label_high = twice(halves.label_of_high);
+  const __m256i half_mask = _mm256_set1_epi8(15), zero = _mm256_setzero_si256();
+  int c = 0;
+  for (; c + 32 <= width; c += 32) {
+    __m256i y;
+    if (row.y_step == 1) {
+      y = load(row.y + c);
+    } else {
+      // Even bytes from where Y comes first, odd ones where it comes second; no byte behind the row is read.
+      const bool y_first = row.y < row.u;
+      const std::uint8_t* block = row.y + 2 * c - (y_first ? 0 : 1);
+      const __m256i low_bytes = _mm256_set1_epi16(255);
+      __m256i a = load(block), b = load(block + 32);
+      a = y_first ? _mm256_and_si256(a, low_bytes) : _mm256_srli_epi16(a, 8);
+      b = y_first ? _mm256_and_si256(b, low_bytes) : _mm256_srli_epi16(b, 8);
+      y = _mm256_permute4x64_epi64(_mm256_packus_epi16(a, b), 0xd8);
+    }
+    const __m128i pairs = _mm_loadu_si128(reinterpret_cast<const __m128i*>(claims + c / 2));
+    const __m256i cells = _mm256_set_m128i(_mm_unpackhi_epi8(pairs, pairs), _mm_unpacklo_epi8(pairs, pairs));
+    const __m256i low = _mm256_and_si256(y, half_mask);
+    const __m256i high = _mm256_and_si256(_mm256_srli_epi16(y, 4), half_mask);
+    const __m256i begun = _mm256_shuffle_epi8(from, low), not_over = _mm256_shuffle_epi8(to, low);
+    const __m256i in_first = _mm256_and_si256(_mm256_shuffle_epi8(first, high), begun);
+    const __m256i in_last = _mm256_and_si256(_mm256_shuffle_epi8(last, high), not_over);
+    const __m256i in_both = _mm256_and_si256(_mm256_shuffle_epi8(both, high), _mm256_and_si256(begun, not_over));
+    const __m256i bright =
+        _mm256_or_si256(_mm256_or_si256(_mm256_shuffle_epi8(whole, high), in_first), _mm256_or_si256(in_last, in_both));
+    const __m256i left = _mm256_and_si256(cells, bright);
+    const __m256i lower = _mm256_and_si256(left, half_mask);
+    const __m256i upper = _mm256_and_si256(_mm256_srli_epi16(left, 4), half_mask);
+    const __m256i label = _mm256_blendv_epi8(_mm256_shuffle_epi8(label_low, lower),
+                                             _mm256_shuffle_epi8(label_high, upper), _mm256_cmpeq_epi8(lower, zero));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(labels + c), label);
+  }
+  const YuvRow rest{row.y + c * row.y_step, row.u, row.v, row.y_step, row.chroma_step};
+  plain_color_kernel.labels(table, claims + c / 2, rest, width - c, labels + c);
+}
+
+TASSILO_AVX2 int runs_of(const std::uint8_t* labels, int width, const RowRuns& runs) {
+  int count = 0;
+  std::uint8_t label = 0;  // of the run at work
+  const auto change = [&](int c, std::uint8_t to) {
+    runs.end[count] = static_cast<std::uint16_t>(c);
+    count += label != 0;
+    runs.begin[count] = static_cast<std::uint16_t>(c);
+    runs.label[count] = label = to;
+  };
+  if (width > 0 && labels[0] != 0) change(0, labels[0]);
+  int c = 1;
+  for (; c + 32 <= width; c += 32) {
+    const __m256i same = _mm256_cmpeq_epi8(load(labels + c), load(labels + c - 1));
+    auto changed = ~static_cast<std::uint32_t>(_mm256_movemask_epi8(same));
+    for (; changed != 0; changed &= changed - 1) {
+      const int at = c + __builtin_ctz(changed);
+      change(at, labels[at]);
+    }
+  }
+  for (; c < width; ++c)
+    if (labels[c] != labels[c - 1]) change(c, labels[c]);
+  if (width > 0 && label != 0) change(width, 0);
+  return count;
+}
+
+/// The block of 32 bytes, of which those from `width` on are 0.
+TASSILO_AVX2 inline __m256i load_inside(const std::uint8_t* row, int c, int width) {
+  if (c + 32 <= width) return load(row + c);
+  std::array<std::uint8_t, 32> rest{};
+  for (int k = 0; k < width - c; ++k) rest[static_cast<std::size_t>(k)] = row[c + k];
+  return load(rest.data());
+}
+TASSILO_AVX2 inline __m256i left_of(__m256i before, __m256i here) {
+  return _mm256_alignr_epi8(here, _mm256_permute2x128_si256(before, here, 0x21), 15);
+}
+TASSILO_AVX2 inline __m256i right_of(__m256i here, __m256i after) {
+  return _mm256_alignr_epi8(_mm256_permute2x128_si256(here, after, 0x21), here, 1);
+}
+
+struct Erode {
+  TASSILO_AVX2 static __m256i join(__m256i a, __m256i b, __m256i c) {
+    return _mm256_and_si256(b, _mm256_and_si256(_mm256_cmpeq_epi8(a, b), _mm256_cmpeq_epi8(c, b)));
+  }
+};
+struct Dilate {
+  TASSILO_AVX2 static __m256i join(__m256i a, __m256i b, __m256i c) {
+    return _mm256_or_si256(b, _mm256_or_si256(a, c));
+  }
+};
+
+template <class Operation>
+TASSILO_AVX2 void over_nine(const ThreeRows& rows, int width, std::uint8_t* labels) {
+  const auto column = [&](int c) TASSILO_AVX2 {
+    if (c >= width) return _mm256_setzero_si256();
+    return Operation::join(load_inside(rows.above, c, width), load_inside(rows.here, c, width),
+                           load_inside(rows.below, c, width));
+  };
+  __m256i before = _mm256_setzero_si256(), here = column(0);
+  for (int c = 0; c < width; c += 32) {
+    const __m256i after = column(c + 32);
+    const __m256i out = Operation::join(left_of(before, here), here, right_of(here, after));
+    if (c + 32 <= width) {
+      _mm256_storeu_si256(reinterpret_cast<__m256i*>(labels + c), out);
+    } else {
+      std::array<std::uint8_t, 32> rest;
+      _mm256_storeu_si256(reinterpret_cast<__m256i*>(rest.data()), out);
+      for (int k = 0; k < width - c; ++k) labels[c + k] = rest[static_cast<std::size_t>(k)];
+    }
+    before = here;
+    here = after;
+  }
+}
+
+}  // namespace
+
+constinit const ColorKernel avx2_color_kernel{claims_of, labels_of, runs_of, over_nine<Erode>, over_nine<Dilate>};
+
+}  // namespace tassilo
+
+#endif

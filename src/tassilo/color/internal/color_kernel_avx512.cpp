@@ -1,0 +1,260 @@
+// AVX-512 with VBMI: 64 cells or pixels an instruction. Only functions marked with TASSILO_AVX512 may hold such
+// instructions: nothing that other sources share is compiled for this machine.
+
+#if defined(__x86_64__)
+
+#if defined(__GNUC__) && !defined(__clang__)
+// g++ 12 takes the deliberately undefined operands inside its own intrinsics for mistakes.
+#pragma GCC diagnostic ignored "-Wuninitialized"
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
+
+#include <immintrin.h>
+
+#include <array>
+#include <cstddef>
+
+#include "tassilo/color/internal/color_kernel.h"
+
+#define TASSILO_AVX512 \
+  __attribute__((target("avx512f,avx512bw,avx512vl,avx512dq,avx512vbmi,avx512vbmi2,avx512bitalg,bmi,bmi2,popcnt")))
+
+namespace tassilo {
+namespace {
+
+TASSILO_AVX512 inline __m512i load(const std::uint8_t* from) { return _mm512_loadu_si512(from); }
+
+/// The numbers first, first + step / divisor, ... as a table in memory, not one made at run time.
+template <class Number>
+struct alignas(64) Numbers {
+  std::array<Number, 64 / sizeof(Number)> values{};
+  constexpr Numbers(int first, int step, int divisor = 1) {
+    for (std::size_t i = 0; i < values.size(); ++i)
+      values[i] = static_cast<Number>(first + static_cast<int>(i) * step / divisor);
+  }
+};
+constexpr Numbers<std::uint8_t> kBytes(0, 1), kEven(0, 2), kOdd(1, 2), kHalf(0, 1, 2), kLeft(63, 1), kRight(1, 1);
+
+template <class Number>
+TASSILO_AVX512 inline __m512i load(const Numbers<Number>& numbers) {
+  return _mm512_load_si512(numbers.values.data());
+}
+
+/// Claims of 64 cells. The steps of a row come by rising U: when no cell has reached one, none reaches the next.
+TASSILO_AVX512 inline __m512i claims_of_cells(const KernelTable& table, __m512i u, __m512i v) {
+  __m512i claims = _mm512_setzero_si512();
+  for (const KernelTable::Window& window : table.windows) {
+    const __m512i row = _mm512_sub_epi8(v, _mm512_set1_epi8(static_cast<char>(window.first_v)));
+    const __mmask64 inside = _mm512_cmplt_epu8_mask(row, _mm512_set1_epi8(static_cast<char>(128)));
+    if (inside == 0) continue;
+    for (const KernelTable::Step& step : window.steps) {
+      const __m512i from = _mm512_permutex2var_epi8(load(step.from.data()), row, load(step.from.data() + 64));
+      const __mmask64 reached = _mm512_mask_cmpge_epu8_mask(inside, u, from);
+      if (reached == 0) break;
+      const __m512i change =
+          _mm512_maskz_permutex2var_epi8(reached, load(step.change.data()), row, load(step.change.data() + 64));
+      claims = _mm512_xor_si512(claims, change);
+    }
+  }
+  return claims;
+}
+
+TASSILO_AVX512 void claims_of(const KernelTable& table, const YuvRow& row, int pairs, std::uint8_t* claims) {
+  if (!table.has_windows) {
+    plain_color_kernel.claims(table, row, pairs, claims);
+    return;
+  }
+  const __m512i even = load(kEven), odd = load(kOdd);
+  int k = 0;
+  for (; k + 64 <= pairs; k += 64) {
+    __m512i u, v;
+    if (row.chroma_step == 1) {
+      u = load(row.u + k);
+      v = load(row.v + k);
+    } else {
+      // NV12 has U V U V .., packed formats (Y) U (Y) V ..: first the chroma bytes, then U apart from V.
+      const bool u_first = row.u < row.v;
+      const std::uint8_t* first = (u_first ? row.u : row.v) + k * row.chroma_step;
+      __m512i a, b;
+      if (row.chroma_step == 2) {
+        a = load(first);
+        b = load(first + 64);
+      } else {
+        // Begins at the pixel before a leading Y, so that no byte behind the row is read.
+        const bool y_first = row.y < row.u;
+        const std::uint8_t* block = y_first ? first - 1 : first;
+        const __m512i chroma = y_first ? odd : even;
+        a = _mm512_permutex2var_epi8(load(block), chroma, load(block + 64));
+        b = _mm512_permutex2var_epi8(load(block + 128), chroma, load(block + 192));
+      }
+      u = _mm512_permutex2var_epi8(a, u_first ? even : odd, b);
+      v = _mm512_permutex2var_epi8(a, u_first ? odd : even, b);
+    }
+    _mm512_storeu_si512(claims + k, claims_of_cells(table, u, v));
+  }
+  if (k == pairs) return;
+  if (row.chroma_step == 1) {
+    const __mmask64 rest = _bzhi_u64(~0ull, static_cast<unsigned>(pairs - k));
+    const __m512i u = _mm512_maskz_loadu_epi8(rest, row.u + k), v = _mm512_maskz_loadu_epi8(rest, row.v + k);
+    _mm512_mask_storeu_epi8(claims + k, rest, claims_of_cells(table, u, v));
+  } else {
+    const YuvRow rest{row.y, row.u + k * row.chroma_step, row.v + k * row.chroma_step, row.y_step, row.chroma_step};
+    plain_color_kernel.claims(table, rest, pairs - k, claims + k);
+  }
+}
+
+/// The 256 bytes of a table.
+struct Table256 {
+  __m512i a, b, c, d;
+};
+TASSILO_AVX512 inline __m512i look_up(const Table256& table, __m512i at) {
+  const __m512i low = _mm512_permutex2var_epi8(table.a, at, table.b);
+  const __m512i high = _mm512_permutex2var_epi8(table.c, at, table.d);
+  return _mm512_mask_blend_epi8(_mm512_movepi8_mask(at), low, high);
+}
+
+/// The lowest bit of the claims that brightness leaves, as a label.
+TASSILO_AVX512 inline __m512i labels_of_pixels(const Table256& bright, __m512i label_of_rank, __m512i claims,
+                                               __m512i y) {
+  const __m512i left = _mm512_and_si512(claims, look_up(bright, y));
+  const __m512i below = _mm512_andnot_si512(left, _mm512_sub_epi8(left, _mm512_set1_epi8(1)));
+  return _mm512_permutexvar_epi8(_mm512_popcnt_epi8(below), label_of_rank);
+}
+
+TASSILO_AVX512 void labels_of(const KernelTable& table, const std::uint8_t* claims, const YuvRow& row, int width,
+                              std::uint8_t* labels) {
+  const std::uint8_t* of_y = table.bright.data();
+  const Table256 bright{load(of_y), load(of_y + 64), load(of_y + 128), load(of_y + 192)};
+  const __m512i label_of_rank =
+      _mm512_broadcast_i32x4(_mm_loadu_si128(reinterpret_cast<const __m128i*>(table.label_of_rank.data())));
+  const __m512i half = load(kHalf), even = load(kEven), odd = load(kOdd);
+  int c = 0;
+  for (; c + 64 <= width; c += 64) {
+    const __m512i pairs = _mm512_castsi256_si512(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(claims + c / 2)));
+    __m512i y;
+    if (row.y_step == 1) {
+      y = load(row.y + c);
+    } else if (row.y < row.u) {
+      y = _mm512_permutex2var_epi8(load(row.y + 2 * c), even, load(row.y + 2 * c + 64));
+    } else {
+      // U Y V Y: begins one byte before Y, so that no byte behind the row is read.
+      y = _mm512_permutex2var_epi8(load(row.y + 2 * c - 1), odd, load(row.y + 2 * c + 63));
+    }
+    _mm512_storeu_si512(labels + c, labels_of_pixels(bright, label_of_rank, _mm512_permutexvar_epi8(half, pairs), y));
+  }
+  if (c == width) return;
+  if (row.y_step == 1) {
+    const auto n = static_cast<unsigned>(width - c);
+    const __mmask64 rest = _bzhi_u64(~0ull, n);
+    const __m512i pairs = _mm512_maskz_loadu_epi8(_bzhi_u64(~0ull, (n + 1) / 2), claims + c / 2);
+    const __m512i y = _mm512_maskz_loadu_epi8(rest, row.y + c);
+    _mm512_mask_storeu_epi8(labels + c, rest,
+                            labels_of_pixels(bright, label_of_rank, _mm512_permutexvar_epi8(half, pairs), y));
+  } else {
+    const YuvRow rest{row.y + c * row.y_step, row.u, row.v, row.y_step, row.chroma_step};
+    plain_color_kernel.labels(table, claims + c / 2, rest, width - c, labels + c);
+  }
+}
+
+/// Columns of the set bits to `to`, which has room for 64.
+TASSILO_AVX512 inline void store_columns(__mmask64 bits, int c, std::uint16_t* to) {
+  const __m512i columns = _mm512_maskz_compress_epi8(bits, load(kBytes));
+  const __m512i first = _mm512_set1_epi16(static_cast<short>(c));
+  const int count = __builtin_popcountll(bits);
+  // Mostly a few: short stores seldom meet the end of a cache line.
+  if (count <= 8) {
+    const __m128i words =
+        _mm_add_epi16(_mm_cvtepu8_epi16(_mm512_castsi512_si128(columns)), _mm512_castsi512_si128(first));
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(to), words);
+    return;
+  }
+  _mm512_storeu_si512(to, _mm512_add_epi16(_mm512_cvtepu8_epi16(_mm512_castsi512_si256(columns)), first));
+  if (count > 32)
+    _mm512_storeu_si512(to + 32, _mm512_add_epi16(_mm512_cvtepu8_epi16(_mm512_extracti64x4_epi64(columns, 1)), first));
+}
+
+TASSILO_AVX512 int runs_of(const std::uint8_t* labels, int width, const RowRuns& runs) {
+  int begins = 0, ends = 0;
+  for (int c = 0; c < width; c += 64) {
+    const auto n = static_cast<unsigned>(width - c);
+    const __mmask64 inside = n >= 64 ? ~0ull : _bzhi_u64(~0ull, n);
+    const __m512i here = _mm512_maskz_loadu_epi8(inside, labels + c);
+    // The first pixel's neighbor is no_color; behind the last pixel there is one more, to see the last run end.
+    const __mmask64 known = c == 0 ? (inside << 1) & ~1ull : (inside << 1) | 1ull;
+    const __m512i before = _mm512_maskz_loadu_epi8(known, labels + c - 1);
+    const __mmask64 changed = _mm512_cmpneq_epi8_mask(here, before);
+    if (changed == 0) continue;
+    const __mmask64 begin = _mm512_mask_test_epi8_mask(changed, here, here);
+    const __mmask64 end = _mm512_mask_test_epi8_mask(changed, before, before);
+    const __m512i label = _mm512_maskz_compress_epi8(begin, here);
+    store_columns(begin, c, runs.begin + begins);
+    store_columns(end, c, runs.end + ends);
+    const int count = __builtin_popcountll(begin);
+    if (count <= 8)
+      _mm_storel_epi64(reinterpret_cast<__m128i*>(runs.label + begins), _mm512_castsi512_si128(label));
+    else
+      _mm512_storeu_si512(runs.label + begins, label);
+    begins += count;
+    ends += __builtin_popcountll(end);
+  }
+  if (ends < begins) runs.end[ends] = static_cast<std::uint16_t>(width);  // up to the border, which ends a block
+  return begins;
+}
+
+/// Neighbors to the left and to the right of 64 pixels.
+TASSILO_AVX512 inline __m512i left_of(__m512i before, __m512i here) {
+  // Byte 63 of the block before, then bytes 0 .. 62.
+  return _mm512_permutex2var_epi8(before, load(kLeft), here);
+}
+TASSILO_AVX512 inline __m512i right_of(__m512i here, __m512i after) {
+  return _mm512_permutex2var_epi8(here, load(kRight), after);
+}
+TASSILO_AVX512 inline __m512i same(__m512i a, __m512i b, __m512i c) {
+  return _mm512_maskz_mov_epi8(_mm512_mask_cmpeq_epu8_mask(_mm512_cmpeq_epu8_mask(a, b), c, b), b);
+}
+constexpr int kOr3 = 0xfe;
+
+/// Three rows of 64 pixels as one: what all three share, or what any has.
+struct Erode {
+  TASSILO_AVX512 static __m512i join(__m512i a, __m512i b, __m512i c) { return same(a, b, c); }
+};
+struct Dilate {
+  TASSILO_AVX512 static __m512i join(__m512i a, __m512i b, __m512i c) {
+    return _mm512_ternarylogic_epi64(a, b, c, kOr3);
+  }
+};
+
+/// A vector of the first `width - c` pixels of three rows, no_color behind them.
+template <class Operation>
+TASSILO_AVX512 inline __m512i column(const ThreeRows& rows, int width, int c) {
+  if (c + 64 <= width) return Operation::join(load(rows.above + c), load(rows.here + c), load(rows.below + c));
+  if (c >= width) return _mm512_setzero_si512();
+  const __mmask64 inside = _bzhi_u64(~0ull, static_cast<unsigned>(width - c));
+  return Operation::join(_mm512_maskz_loadu_epi8(inside, rows.above + c),
+                         _mm512_maskz_loadu_epi8(inside, rows.here + c),
+                         _mm512_maskz_loadu_epi8(inside, rows.below + c));
+}
+
+template <class Operation>
+TASSILO_AVX512 void over_nine(const ThreeRows& rows, int width, std::uint8_t* labels) {
+  __m512i before = _mm512_setzero_si512(), here = column<Operation>(rows, width, 0);
+  for (int c = 0; c < width; c += 64) {
+    const __m512i after = column<Operation>(rows, width, c + 64);
+    const __m512i out = Operation::join(left_of(before, here), here, right_of(here, after));
+    // Stores with a mask of bytes are slow on some machines: only at the end of a row.
+    if (c + 64 <= width)
+      _mm512_storeu_si512(labels + c, out);
+    else
+      _mm512_mask_storeu_epi8(labels + c, _bzhi_u64(~0ull, static_cast<unsigned>(width - c)), out);
+    before = here;
+    here = after;
+  }
+}
+
+}  // namespace
+
+constinit const ColorKernel avx512_color_kernel{claims_of, labels_of, runs_of, over_nine<Erode>, over_nine<Dilate>};
+
+}  // namespace tassilo
+
+#endif

@@ -1,0 +1,169 @@
+// NEON: 16 cells or pixels an instruction, tables of 64 bytes looked up at once.
+
+#if defined(__aarch64__)
+
+#include <arm_neon.h>
+
+#include "tassilo/color/internal/color_kernel.h"
+
+namespace tassilo {
+namespace {
+
+uint8x16x4_t table64(const std::uint8_t* from) { return vld1q_u8_x4(from); }
+
+/// One of 128 bytes for each row; 0 for rows beyond them.
+uint8x16_t look_up(const std::uint8_t* table, uint8x16_t row) {
+  return vqtbx4q_u8(vqtbl4q_u8(table64(table), row), table64(table + 64), vsubq_u8(row, vdupq_n_u8(64)));
+}
+
+/// Claims of 16 cells. Rows outside a window change nothing: look-ups beyond the table are 0.
+uint8x16_t claims_of_cells(const KernelTable& table, uint8x16_t u, uint8x16_t v) {
+  uint8x16_t claims = vdupq_n_u8(0);
+  for (const KernelTable::Window& window : table.windows) {
+    const uint8x16_t row = vsubq_u8(v, vdupq_n_u8(static_cast<std::uint8_t>(window.first_v)));
+    for (const KernelTable::Step& step : window.steps) {
+      const uint8x16_t reached = vcgeq_u8(u, look_up(step.from.data(), row));
+      claims = veorq_u8(claims, vandq_u8(reached, look_up(step.change.data(), row)));
+    }
+  }
+  return claims;
+}
+
+void claims_of(const KernelTable& table, const YuvRow& row, int pairs, std::uint8_t* claims) {
+  int k = 0;
+  // Packed formats are read by whole groups of four bytes, beginning with whatever comes first.
+  const bool y_first = row.y < row.u;
+  for (; table.has_windows && k + 16 <= pairs; k += 16) {
+    uint8x16_t u, v;
+    if (row.chroma_step == 1) {
+      u = vld1q_u8(row.u + k);
+      v = vld1q_u8(row.v + k);
+    } else {
+      const bool u_first = row.u < row.v;
+      const std::uint8_t* first = (u_first ? row.u : row.v) + k * row.chroma_step;
+      uint8x16_t a, b;
+      if (row.chroma_step == 2) {
+        const uint8x16x2_t chroma = vld2q_u8(first);
+        a = chroma.val[0];
+        b = chroma.val[1];
+      } else {
+        const uint8x16x4_t group = vld4q_u8(y_first ? first - 1 : first);
+        a = group.val[y_first ? 1 : 0];
+        b = group.val[y_first ? 3 : 2];
+      }
+      u = u_first ? a : b;
+      v = u_first ? b : a;
+    }
+    vst1q_u8(claims + k, claims_of_cells(table, u, v));
+  }
+  const YuvRow rest{row.y, row.u + k * row.chroma_step, row.v + k * row.chroma_step, row.y_step, row.chroma_step};
+  plain_color_kernel.claims(table, rest, pairs - k, claims + k);
+}
+
+void labels_of(const KernelTable& table, const std::uint8_t* claims, const YuvRow& row, int width,
+               std::uint8_t* labels) {
+  const uint8x16x4_t bright[4] = {table64(table.bright.data()), table64(table.bright.data() + 64),
+                                  table64(table.bright.data() + 128), table64(table.bright.data() + 192)};
+  const uint8x16_t label_of_rank = vld1q_u8(table.label_of_rank.data());
+  const auto label = [&](uint8x16_t cells, uint8x16_t y) {
+    uint8x16_t allowed = vqtbl4q_u8(bright[0], y);
+    allowed = vqtbx4q_u8(allowed, bright[1], vsubq_u8(y, vdupq_n_u8(64)));
+    allowed = vqtbx4q_u8(allowed, bright[2], vsubq_u8(y, vdupq_n_u8(128)));
+    allowed = vqtbx4q_u8(allowed, bright[3], vsubq_u8(y, vdupq_n_u8(192)));
+    // Leading zeros of the reversed bits: the number of the lowest bit, 8 where there is none.
+    return vqtbl1q_u8(label_of_rank, vclzq_u8(vrbitq_u8(vandq_u8(cells, allowed))));
+  };
+  int c = 0;
+  for (; c + 32 <= width; c += 32) {
+    const uint8x16_t pairs = vld1q_u8(claims + c / 2);
+    uint8x16_t y0, y1;
+    if (row.y_step == 1) {
+      y0 = vld1q_u8(row.y + c);
+      y1 = vld1q_u8(row.y + c + 16);
+    } else {
+      const bool y_first = row.y < row.u;
+      const std::uint8_t* block = row.y + 2 * c - (y_first ? 0 : 1);
+      y0 = vld2q_u8(block).val[y_first ? 0 : 1];
+      y1 = vld2q_u8(block + 32).val[y_first ? 0 : 1];
+    }
+    vst1q_u8(labels + c, label(vzip1q_u8(pairs, pairs), y0));
+    vst1q_u8(labels + c + 16, label(vzip2q_u8(pairs, pairs), y1));
+  }
+  const YuvRow rest{row.y + c * row.y_step, row.u, row.v, row.y_step, row.chroma_step};
+  plain_color_kernel.labels(table, claims + c / 2, rest, width - c, labels + c);
+}
+
+int runs_of(const std::uint8_t* labels, int width, const RowRuns& runs) {
+  int count = 0;
+  std::uint8_t label = 0;  // of the run at work
+  const auto change = [&](int c, std::uint8_t to) {
+    runs.end[count] = static_cast<std::uint16_t>(c);
+    count += label != 0;
+    runs.begin[count] = static_cast<std::uint16_t>(c);
+    runs.label[count] = label = to;
+  };
+  if (width > 0 && labels[0] != 0) change(0, labels[0]);
+  int c = 1;
+  for (; c + 16 <= width; c += 16) {
+    const uint8x16_t same = vceqq_u8(vld1q_u8(labels + c), vld1q_u8(labels + c - 1));
+    // Four bits a pixel: NEON has no mask of one bit a byte.
+    const uint8x8_t narrow = vshrn_n_u16(vreinterpretq_u16_u8(vmvnq_u8(same)), 4);
+    std::uint64_t changed = vget_lane_u64(vreinterpret_u64_u8(narrow), 0) & 0x1111111111111111u;
+    for (; changed != 0; changed &= changed - 1) {
+      const int at = c + __builtin_ctzll(changed) / 4;
+      change(at, labels[at]);
+    }
+  }
+  for (; c < width; ++c)
+    if (labels[c] != labels[c - 1]) change(c, labels[c]);
+  if (width > 0 && label != 0) change(width, 0);
+  return count;
+}
+
+/// The block of 16 bytes, of which those from `width` on are 0.
+uint8x16_t load_inside(const std::uint8_t* row, int c, int width) {
+  if (c + 16 <= width) return vld1q_u8(row + c);
+  std::uint8_t rest[16] = {};
+  for (int k = 0; k < width - c; ++k) rest[k] = row[c + k];
+  return vld1q_u8(rest);
+}
+
+struct Erode {
+  static uint8x16_t join(uint8x16_t a, uint8x16_t b, uint8x16_t c) {
+    return vandq_u8(b, vandq_u8(vceqq_u8(a, b), vceqq_u8(c, b)));
+  }
+};
+struct Dilate {
+  static uint8x16_t join(uint8x16_t a, uint8x16_t b, uint8x16_t c) { return vorrq_u8(b, vorrq_u8(a, c)); }
+};
+
+template <class Operation>
+void over_nine(const ThreeRows& rows, int width, std::uint8_t* labels) {
+  const auto column = [&](int c) {
+    if (c >= width) return vdupq_n_u8(0);
+    return Operation::join(load_inside(rows.above, c, width), load_inside(rows.here, c, width),
+                           load_inside(rows.below, c, width));
+  };
+  uint8x16_t before = vdupq_n_u8(0), here = column(0);
+  for (int c = 0; c < width; c += 16) {
+    const uint8x16_t after = column(c + 16);
+    const uint8x16_t out = Operation::join(vextq_u8(before, here, 15), here, vextq_u8(here, after, 1));
+    if (c + 16 <= width) {
+      vst1q_u8(labels + c, out);
+    } else {
+      std::uint8_t rest[16];
+      vst1q_u8(rest, out);
+      for (int k = 0; k < width - c; ++k) labels[c + k] = rest[k];
+    }
+    before = here;
+    here = after;
+  }
+}
+
+}  // namespace
+
+constinit const ColorKernel neon_color_kernel{claims_of, labels_of, runs_of, over_nine<Erode>, over_nine<Dilate>};
+
+}  // namespace tassilo
+
+#endif
