@@ -127,6 +127,23 @@ ShapeFeatures shape_features(const Region& region) {
   return features;
 }
 
+double orientation(const Region& region) {
+  if (region.empty()) return 0;
+  const ShapeFeatures features = shape_features(region);
+  const double phi = features.ellipse.phi;
+  const PixelPoint axis{std::cos(phi), -std::sin(phi)};
+  double ahead = 0, behind = 0;  // largest squared distances from the centre, by side
+  for (const PixelRun& run : region.runs())
+    for (const int column : {int{run.begin}, run.end - 1}) {
+      const PixelPoint from = PixelPoint{static_cast<double>(column), static_cast<double>(run.row)} - features.center;
+      double& farthest = dot(axis, from) >= 0 ? ahead : behind;
+      farthest = std::max(farthest, dot(from, from));
+    }
+  // Symmetric regions must not turn around by rounding.
+  if (behind <= ahead * (1 + 1e-12)) return phi;
+  return phi > 0 ? phi - kPi : phi + kPi;
+}
+
 double contour_length(const Region& region) {
   double length = 0;
   for (const Region& component : components(region)) {

@@ -50,6 +50,11 @@ struct ShapeFeatures {
 /// O(R), no allocation.
 ShapeFeatures shape_features(const Region& region);
 
+/// The direction a region points to: the ellipse's long axis, of its two ways the one on whose side the pixel farthest
+/// from the centre lies, in (-pi, pi]; `ellipse.phi` for regions that are farthest on both sides. HALCON
+/// `orientation_region`. O(R). [rad]
+double orientation(const Region& region);
+
 /// Length of the outer contours of all components, through the centres of the border pixels: 1 per step along an axis,
 /// sqrt 2 per diagonal step; contours of holes do not count, those of islands in holes do; a line of n pixels is walked
 /// both ways, 2 (n - 1). HALCON `contlength`; OpenCV `arcLength` over `findContours`. [px]

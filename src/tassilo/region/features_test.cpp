@@ -122,6 +122,31 @@ TEST(Features, OrientationIsCounterClockwiseOnTheScreen) {
   EXPECT_DOUBLE_EQ(shape_features(rectangle(5, 5)).ellipse.phi, 0);
 }
 
+TEST(Features, OrientationPointsToTheFarEnd) {
+  for (int turn_deg = -175; turn_deg <= 180; turn_deg += 5) {
+    SCOPED_TRACE(turn_deg);
+    const double phi = turn_deg * kPi / 180;
+    const PixelPoint axis{std::cos(phi), -std::sin(phi)};
+    // A drop: its tip is farthest from the centre.
+    const Region drop = region_by_pixel({-80, -80, 81, 81}, [&](int c, int r) {
+      const PixelPoint p{double(c), double(r)};
+      const double along = dot(axis, p);
+      return along > -20 && along < 60 && std::abs(cross(axis, p)) < (60 - along) / 5;
+    });
+    EXPECT_NEAR(std::remainder(orientation(drop) - phi, 2 * kPi), 0, .02);
+    EXPECT_GT(orientation(drop), -kPi);
+    EXPECT_LE(orientation(drop), kPi);
+  }
+  for (unsigned seed = 0; seed < kRandomCases; ++seed) {
+    const Region region = random_case(seed).region;
+    const double phi = shape_features(region).ellipse.phi, there = orientation(region);
+    EXPECT_NEAR(std::remainder(there - phi, kPi), 0, 1e-12) << "seed " << seed;
+    EXPECT_DOUBLE_EQ(orientation(union_of(region, reflected(region))),
+                     shape_features(union_of(region, reflected(region))).ellipse.phi);
+  }
+  EXPECT_EQ(orientation(Region{}), 0);
+}
+
 TEST(Features, OfADiscAreThoseOfACircle) {
   const ShapeFeatures features = shape_features(translated(disc(50), {100, 80}));
   EXPECT_NEAR(features.center.x, 100, 1e-12);

@@ -29,7 +29,7 @@ Region holes_up_to(const Region& region, const FillOptions& options) {
   RunVector kept;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const Part& part = parts[static_cast<std::size_t>(labels.label[i])];
-    if (!part.outside && part.area <= options.max_area_px) kept.push_back(runs[i]);
+    if (!part.outside && part.area >= options.min_area_px && part.area <= options.max_area_px) kept.push_back(runs[i]);
   }
   return Region::from_sorted(std::move(kept));
 }

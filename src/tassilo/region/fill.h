@@ -13,13 +13,15 @@ namespace tassilo {
 /// O(R + rows of the bounding box).
 Region holes(const Region& region, Connectivity foreground = Connectivity::eight);
 
-/// Which holes `fill_holes` fills.
+/// Which holes `fill_holes` fills: those whose area is in [min_area_px, max_area_px].
 struct FillOptions {
+  std::int64_t min_area_px = 1;                                         ///< Smaller holes stay open. [px^2], >= 0
   std::int64_t max_area_px = std::numeric_limits<std::int64_t>::max();  ///< Larger holes stay open. [px^2], >= 0
   Connectivity foreground = Connectivity::eight;                        ///< The background has the dual one.
 };
 
-/// The region with its holes filled (HALCON `fill_up`; with max_area_px `fill_up_shape` on 'area'). Cost as `holes`.
+/// The region with its holes filled (HALCON `fill_up`; with areas `fill_up_shape` on 'area'; other features: `fill_up`
+/// in select.h). Cost as `holes`.
 Region fill_holes(const Region& region, const FillOptions& options = {});
 
 }  // namespace tassilo

@@ -42,6 +42,8 @@ TEST(Fill, OnlySmallHolesWhenAsked) {
   EXPECT_EQ(fill_holes(region, {.max_area_px = 3}), region);
   EXPECT_EQ(fill_holes(region, {.max_area_px = 4}), union_of(region, small));
   EXPECT_EQ(fill_holes(region, {.max_area_px = 19}), union_of(region, small));
+  EXPECT_EQ(fill_holes(region, {.min_area_px = 5}), union_of(region, large));
+  EXPECT_EQ(fill_holes(region, {.min_area_px = 5, .max_area_px = 19}), region);
   EXPECT_EQ(fill_holes(region), frame);
 }
 

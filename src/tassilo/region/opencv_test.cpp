@@ -10,26 +10,12 @@
 
 #include "tassilo/region/algebra.h"
 #include "tassilo/region/features.h"
+#include "tassilo/region/internal/test_opencv.h"
 #include "tassilo/region/internal/test_regions.h"
 #include "tassilo/region/morphology.h"
-#include "tassilo/region/raster.h"
 
 namespace tassilo {
 namespace {
-
-cv::Mat mat_of(const Region& region, const PixelBox& window) {
-  const std::vector<std::uint8_t> bytes = to_mask(region, window);
-  return cv::Mat(window.height(), window.width(), CV_8U, const_cast<std::uint8_t*>(bytes.data())).clone();
-}
-
-Region region_of(const cv::Mat& mask, const PixelBox& window) {
-  const ByteView view{mask.data, mask.cols, mask.rows, static_cast<std::ptrdiff_t>(mask.step[0])};
-  return translated(region_where(view, [](int byte) { return byte != 0; }), {window.x0, window.y0});
-}
-
-PixelBox wider(const PixelBox& box, int margin) {
-  return {box.x0 - margin, box.y0 - margin, box.x1 + margin, box.y1 + margin};
-}
 
 TEST(OpenCv, SameComponentsWithAreaCenterAndBox) {
   for (unsigned seed = 0; seed < kRandomCases; ++seed) {

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <compare>
 #include <utility>
 
 #include "tassilo/base/contract.h"
 #include "tassilo/region/algebra.h"
 #include "tassilo/region/internal/coordinate.h"
+#include "tassilo/region/internal/polygon_scan.h"
 
 namespace tassilo {
 namespace {
@@ -19,19 +18,6 @@ void paint(const Region& region, const PixelBox& window, std::uint8_t value, std
     const auto first = static_cast<std::ptrdiff_t>(run.row - window.y0) * window.width() + run.begin - window.x0;
     std::fill_n(bytes.begin() + first, run.length(), value);
   }
-}
-
-/// Where an edge passes through a row of pixel centres.
-struct Crossing {
-  int row = 0;
-  double column = 0;
-
-  friend auto operator<=>(const Crossing&, const Crossing&) = default;
-};
-
-/// Rows and columns from the smallest whole number >= value, cut to [low, high].
-int ceil_within(double value, int low, int high) {
-  return static_cast<int>(std::clamp(std::ceil(value), static_cast<double>(low), static_cast<double>(high)));
 }
 
 }  // namespace
@@ -88,27 +74,9 @@ std::vector<std::uint8_t> to_labels(std::span<const Region> regions, const Pixel
 }
 
 Region region_from_polygon(std::span<const PixelPoint> vertices, const PixelBox& window) {
-  if (vertices.size() < 3 || window.empty()) return {};
-  RecycledVector<Crossing> crossings;
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    PixelPoint top = vertices[i], bottom = vertices[(i + 1) % vertices.size()];
-    expects(std::isfinite(top.x) && std::isfinite(top.y), "polygon vertices are finite");
-    // The same arithmetic whichever way the edge is walked: polygons that share it get the same crossings.
-    if (bottom.y < top.y) std::swap(top, bottom);
-    const int first = ceil_within(top.y, window.y0, window.y1), end = ceil_within(bottom.y, window.y0, window.y1);
-    for (int row = first; row < end; ++row) {
-      const double share = (row - top.y) / (bottom.y - top.y);
-      crossings.push_back({row, top.x + share * (bottom.x - top.x)});
-    }
-  }
-  std::ranges::sort(crossings, [](const Crossing& a, const Crossing& b) { return a < b; });
-  // Every row has an even number of crossings, as a closed outline comes back.
-  RunVector runs;
-  for (std::size_t i = 0; i + 1 < crossings.size(); i += 2)
-    runs.push_back({to_coordinate(crossings[i].row),
-                    to_coordinate(ceil_within(crossings[i].column, window.x0, window.x1)),
-                    to_coordinate(ceil_within(crossings[i + 1].column, window.x0, window.x1))});
-  return Region::from_runs(std::move(runs));
+  PolygonScan scan(window);
+  scan.add(vertices);
+  return std::move(scan).region();
 }
 
 }  // namespace tassilo
