@@ -19,7 +19,7 @@ endif()
 if(NOT python_reason)
   add_subdirectory(python)
   if(TASSILO_TESTS)
-    foreach(test region image color vision limits package)
+    foreach(test region region_features image color vision limits package)
       add_test(NAME python.${test} COMMAND ${CMAKE_COMMAND} -E env PYTHONPATH=${PROJECT_BINARY_DIR}/python
         PYTHONDONTWRITEBYTECODE=1 TASSILO_PROGRAM=$<TARGET_FILE:tassilo>
         ${Python_EXECUTABLE} -m pytest -q -p no:cacheprovider python/tests/test_${test}.py

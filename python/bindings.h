@@ -29,6 +29,7 @@ namespace py = pybind11;
 using namespace py::literals;
 
 void bind_region(py::module_& module);
+void bind_features(py::module_& module);
 void bind_image(py::module_& module);
 void bind_color(py::module_& module);
 void bind_camera(py::module_& module);
@@ -77,6 +78,36 @@ py::array_t<T> view_of(const T* data, std::vector<py::ssize_t> shape, py::handle
   py::array_t<T> view(std::move(shape), data, owner);
   py::detail::array_proxy(view.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
   return view;
+}
+
+/// (N, 2) of column, row.
+template <class Points>
+py::array_t<double> array_of_points(const Points& points) {
+  std::vector<double> numbers;
+  numbers.reserve(2 * points.size());
+  for (const auto& point : points) numbers.insert(numbers.end(), {point.x, point.y});
+  return array_of(std::move(numbers), {static_cast<py::ssize_t>(points.size()), 2});
+}
+
+/// What an argument that may be several things is; raises TypeError("NAME is a TYPE, must be MUST") when it is not.
+template <class T>
+T as(const char* name, py::handle argument, const char* must) {
+  try {
+    return argument.cast<T>();
+  } catch (const py::cast_error&) {
+    throw py::type_error(std::string(name) + " is a " + Py_TYPE(argument.ptr())->tp_name + ", must be " + must);
+  }
+}
+
+/// The value that a word stands for.
+template <class T>
+T choice(const char* name, const std::string& word, std::initializer_list<std::pair<const char*, T>> choices) {
+  std::string words;
+  for (const auto& [known, value] : choices) {
+    if (word == known) return value;
+    words.append(words.empty() ? "" : ", ").append(known);
+  }
+  refuse(name, "is '" + word + "', must be one of " + words);
 }
 
 }  // namespace tassilo::python

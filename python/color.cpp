@@ -205,14 +205,16 @@ TrainingSet training_set(const py::object& samples, ColorRange images_range, con
     if (!py::isinstance<py::sequence>(item) || py::len(item) != 3)
       refuse("sample", "is " + py::repr(item).cast<std::string>() + ", must be (frame, region, class name)");
     const auto sample = py::reinterpret_borrow<py::sequence>(item);
-    const auto& frame = py::object(sample[0]).cast<const Frame&>();
-    const auto& region = py::object(sample[1]).cast<const Region&>();
+    const py::object first = sample[0], second = sample[1], third = sample[2];
+    const auto& frame = as<const Frame&>("frame of a sample", first, "a Frame");
+    const auto& region = as<const Region&>("region of a sample", second, "a Region");
     if (set.loaded.range) check_range("a frame of the samples", frame, *set.loaded.range);
     set.loaded.range = frame.range;
     const int group = group_of.emplace(&frame, static_cast<int>(group_of.size())).first->second;
     std::vector<YuvPixel> pixels = pixels_of(frame.view, region);
     if (pixels.empty()) refuse("region of a sample", "has no pixel in its frame, must have one");
-    set.loaded.samples.push_back({py::object(sample[2]).cast<ColorClass>(), group, std::move(pixels)});
+    const auto color = as<ColorClass>("class of a sample", third, "a name");
+    set.loaded.samples.push_back({color, group, std::move(pixels)});
   }
   set.loaded.images = static_cast<int>(group_of.size());
   return set;

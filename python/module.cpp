@@ -20,6 +20,7 @@ PYBIND11_MODULE(_tassilo, module) {
       "The outside world failed us: a file, a video, a configuration entry. Wrong arguments are ValueError or "
       "TypeError.";
   bind_region(module);
+  bind_features(module);
   bind_image(module);
   bind_color(module);
   bind_camera(module);

@@ -7,66 +7,31 @@
 #include <span>
 
 #include "bindings.h"
+#include "region_checks.h"
 #include "tassilo/region/algebra.h"
-#include "tassilo/region/features.h"
+#include "tassilo/region/elements.h"
 #include "tassilo/region/fill.h"
+#include "tassilo/region/hit_or_miss.h"
 #include "tassilo/region/morphology.h"
+#include "tassilo/region/outline.h"
+#include "tassilo/region/partition.h"
 #include "tassilo/region/raster.h"
+#include "tassilo/region/remove_noise.h"
+#include "tassilo/region/residue.h"
+#include "tassilo/region/transform.h"
 
-// To add an operator, one statement in bind_operators or bind_features, in the order of docs/regions.md:
+// To add an operator, one statement in bind_operators (or in region_features.cpp), in the order of docs/regions.md:
 //
 //   def(module, "name", function, check, "one sentence", "region"_a, "element"_a);
 //
 // `check` refuses what would break a promise of the function (its coordinates stay within 16 bit, its element is not
-// empty, ...): one of the checks below, a lambda that takes the same arguments, or kAnything. An overloaded function
+// empty, ...): one of region_checks.h, a lambda that takes the same arguments, or kAnything. An overloaded function
 // needs a cast, see union_of; an options struct becomes keyword arguments in a lambda, see fill_holes. Then
 // `tools/python_stubs.py BUILD/python` rewrites the type stubs, and tests/test_limits.py calls the operator with
 // extreme regions by itself when all its arguments are regions.
 
 namespace tassilo::python {
 namespace {
-
-constexpr int kLow = -32768, kHigh = 32767;
-
-std::string text_of(const PixelBox& box) {
-  return "(" + std::to_string(box.x0) + ", " + std::to_string(box.y0) + ", " + std::to_string(box.x1) + ", " +
-         std::to_string(box.y1) + ")";
-}
-
-/// Refuses boxes whose runs would leave 16 bit.
-void check_box(const std::string& name, const PixelBox& box) {
-  if (box.empty() || (box.x0 >= kLow && box.y0 >= kLow && box.x1 <= kHigh && box.y1 <= kHigh + 1)) return;
-  refuse(name, "is " + text_of(box) + ", must stay within -32768 .. 32767");
-}
-
-PixelBox grown(const PixelBox& box, int columns, int rows) {
-  return box.empty() ? box : PixelBox{box.x0 - columns, box.y0 - rows, box.x1 + columns, box.y1 + rows};
-}
-
-/// For operators that walk the element over the region `times` times: refuses an empty element, and a region that on
-/// the way might leave 16 bit.
-template <int times>
-void check_element(const Region& region, const Region& element) {
-  if (element.empty()) refuse("element", "is empty, must have a pixel");
-  const PixelBox e = bounding_box(element);
-  const int columns = std::max(std::abs(e.x0), std::abs(e.x1)) + e.width();
-  const int rows = std::max(std::abs(e.y0), std::abs(e.y1)) + e.height();
-  check_box("box of the region, grown by the element,", grown(bounding_box(region), times * columns, times * rows));
-}
-
-void check_window(const PixelBox& window) { check_box("window", window); }
-
-ByteView byte_view(const char* name, const py::array& array) {
-  const char kind = array.dtype().kind();
-  if (array.ndim() != 2 || array.itemsize() != 1 || (kind != 'u' && kind != 'b'))
-    refuse(name, "is " + shown(array) + ", must be (height, width) of uint8 or bool");
-  if (array.shape(0) > kHigh || array.shape(1) > kHigh)
-    refuse(name, "is " + shown(array) + ", must be at most 32767 in each direction");
-  if (array.shape(1) > 1 && array.strides(1) != 1)
-    refuse(name, "has gaps between the pixels of a row, must have none; numpy.ascontiguousarray makes such a copy");
-  return {static_cast<const std::uint8_t*>(array.data()), static_cast<int>(array.shape(1)),
-          static_cast<int>(array.shape(0)), array.strides(0)};
-}
 
 Region region_from_mask(const py::array& mask) {
   const ByteView view = byte_view("mask", mask);
@@ -97,7 +62,7 @@ Region region_from_runs(const ArrayLike& argument) {
   return Region::from_runs(std::move(vector));
 }
 
-std::string text_of(const Region& region) {
+std::string repr_of(const Region& region) {
   if (region.empty()) return "<tassilo.Region: empty>";
   return "<tassilo.Region: " + std::to_string(area(region)) + " px, " + std::to_string(region.runs().size()) +
          (region.runs().size() == 1 ? " run" : " runs") + ", box " + text_of(bounding_box(region)) + ">";
@@ -164,7 +129,7 @@ Immutable, hashable, picklable; equal sets are equal. It is a set of pixels: len
       .def(
           "__le__", [](const Region& a, const Region& b) { return difference(a, b).empty(); }, py::is_operator(),
           "other"_a)
-      .def("__repr__", [](const Region& region) { return text_of(region); })
+      .def("__repr__", &repr_of)
       .def(py::pickle([](const Region& region) { return py::make_tuple(bytes_of(region)); },
                       [](const py::tuple& state) {
                         const auto bytes = state[0].cast<std::string>();
@@ -174,6 +139,55 @@ Immutable, hashable, picklable; equal sets are equal. It is a set of pixels: len
                         std::copy(bytes.begin(), bytes.end(), reinterpret_cast<char*>(runs.data()));
                         return Region::from_runs(std::move(runs));
                       }));
+}
+
+/// 2 about, once it is known to be a place of a mirror.
+int check_mirror(double about) {
+  if (!(std::abs(about) <= 65536) || 2 * about != std::floor(2 * about))
+    refuse("about", "is " + std::to_string(about) + ", must be a multiple of .5 within +-65536");
+  return static_cast<int>(2 * about);
+}
+
+void check_zoom(const PixelBox& box, double columns, double rows) {
+  for (const double factor : {columns, rows})
+    if (!(factor > 0 && std::isfinite(factor))) refuse("factor", "is " + std::to_string(factor) + ", must be > 0");
+  const auto fits = [](int edge, double factor) {
+    const double scaled = std::ceil(edge * factor - .5);
+    return scaled >= kLow && scaled <= kHigh;
+  };
+  if (!fits(box.x0, columns) || !fits(box.x1, columns) || !fits(box.y0, rows) || !fits(box.y1, rows))
+    refuse("box of the region", "is " + text_of(box) + ", must stay within -32768 .. 32767 when zoomed");
+}
+
+void check_reflected(const Region& region) {
+  const PixelBox box = bounding_box(region);
+  check_box("box of the reflected region", {1 - box.x1, 1 - box.y1, 1 - box.x0, 1 - box.y0});
+}
+
+void check_neighbors(const Region& region, Connectivity) { check_element<1>(region, rectangle(3, 3)); }
+
+void check_radius(int radius) {
+  if (radius < 0 || radius >= kHigh) refuse("radius", "is " + std::to_string(radius) + ", must be 0 .. 32766");
+}
+
+RecycledVector<PixelPoint> points_of(const char* name, const ArrayLike& argument) {
+  const py::array_t<double, py::array::c_style | py::array::forcecast> vertices(argument.array);
+  if (vertices.size() > 0 && (vertices.ndim() != 2 || vertices.shape(1) != 2))
+    refuse(name, "are " + shown(vertices) + ", must be (N, 2): column, row");
+  RecycledVector<PixelPoint> points;
+  for (py::ssize_t i = 0; i < vertices.size() / 2; ++i) {
+    const double *corner = vertices.data() + 2 * i, limit = 1e9;
+    if (!(std::abs(corner[0]) <= limit && std::abs(corner[1]) <= limit))
+      refuse(std::string(name) + "[" + std::to_string(i) + "]", "is beyond +-1e9, must be within");
+    points.push_back({corner[0], corner[1]});
+  }
+  return points;
+}
+
+std::vector<std::pair<py::array_t<double>, bool>> listed(const RecycledVector<Outline>& outlines) {
+  std::vector<std::pair<py::array_t<double>, bool>> list;
+  for (const Outline& outline : outlines) list.emplace_back(array_of_points(outline.corners), outline.is_hole);
+  return list;
 }
 
 void bind_operators(py::module_& module) {
@@ -215,13 +229,42 @@ void bind_operators(py::module_& module) {
         check_box("box of the transposed region", {box.y0, box.x0, box.y1, box.x1});
       },
       "Pixel (column, row) goes to (row, column).", "region"_a);
+  def(module, "reflected", &reflected, &check_reflected, "Pixel (column, row) goes to (-column, -row).", "region"_a);
+
+  // Transforms: transform.h, partition.h
   def(
-      module, "reflected", &reflected,
-      [](const Region& region) {
+      module, "mirrored_left_right", &mirrored_left_right,
+      [](const Region& region, double about) {
+        const int sum = check_mirror(about);
         const PixelBox box = bounding_box(region);
-        check_box("box of the reflected region", {1 - box.x1, 1 - box.y1, 1 - box.x0, 1 - box.y0});
+        if (!box.empty()) check_box("box of the mirrored region", {sum + 1 - box.x1, box.y0, sum + 1 - box.x0, box.y1});
       },
-      "Pixel (column, row) goes to (-column, -row).", "region"_a);
+      "Pixel (column, row) goes to (2 about - column, row); about is a multiple of .5.", "region"_a, "about"_a);
+  def(
+      module, "mirrored_top_bottom", &mirrored_top_bottom,
+      [](const Region& region, double about) {
+        const int sum = check_mirror(about);
+        const PixelBox box = bounding_box(region);
+        if (!box.empty()) check_box("box of the mirrored region", {box.x0, sum + 1 - box.y1, box.x1, sum + 1 - box.y0});
+      },
+      "Pixel (column, row) goes to (column, 2 about - row); about is a multiple of .5.", "region"_a, "about"_a);
+  module.def(
+      "zoomed",
+      [](const Region& region, double columns, double rows) {
+        check_zoom(bounding_box(region), columns, rows);
+        py::gil_scoped_release unlocked;
+        return zoomed(region, {.columns = columns, .rows = rows});
+      },
+      "The region drawn larger or smaller by factors > 0.", "region"_a, "columns"_a, "rows"_a);
+  module.def(
+      "partition_into_rectangles",
+      [](const Region& region, int width, int height) {
+        if (width < 1 || height < 1)
+          refuse("part", "is " + std::to_string(width) + " x " + std::to_string(height) + " pixels, must be >= 1");
+        py::gil_scoped_release unlocked;
+        return partition_into_rectangles(region, {.width = width, .height = height});
+      },
+      "The region cut along a grid of cells of about this size.", "region"_a, "width"_a, "height"_a);
 
   // Morphology: morphology.h
   def(
@@ -246,6 +289,49 @@ void bind_operators(py::module_& module) {
   def(module, "closing", &closing, &check_element<2>, "What the element cannot enter from outside.", "region"_a,
       "element"_a);
 
+  // More elements and operators: elements.h, residue.h, hit_or_miss.h, remove_noise.h
+  def(module, "diamond", &diamond, &check_radius,
+      "Element of the pixels at most `radius` steps along rows and columns away.", "radius"_a);
+  def(module, "octagon", &octagon, &check_radius, "Element of the pixels in a regular octagon, cheaper than a disc.",
+      "radius"_a);
+  module.def(
+      "line_element",
+      [](double length_px, double angle) {
+        if (!(length_px >= 1 && length_px <= kHigh))
+          refuse("length_px", "is " + std::to_string(length_px) + ", must be 1 .. 32767");
+        if (!std::isfinite(angle)) refuse("angle", "is " + std::to_string(angle) + ", must be finite");
+        return line_element({.length_px = length_px, .angle = angle});
+      },
+      "Element one pixel wide through the origin; angle counter-clockwise from right [rad].", "length_px"_a,
+      "angle"_a = 0.0);
+  def(module, "top_hat", &top_hat, &check_element<2>, "What an opening takes away.", "region"_a, "element"_a);
+  def(module, "bottom_hat", &bottom_hat, &check_element<2>, "What a closing adds.", "region"_a, "element"_a);
+  def(
+      module, "hit_or_miss", &hit_or_miss,
+      [](const Region& region, const Region& hit, const Region& miss) {
+        check_element<1>(region, hit);
+        if (miss.empty()) return;
+        check_reflected(miss);
+        check_element<1>(region, reflected(miss));
+      },
+      "Places where `hit` lies in the region and `miss` outside.", "region"_a, "hit"_a, "miss"_a);
+  def(module, "inner_boundary", &inner_boundary, &check_neighbors, "Pixels of the region that have a neighbor outside.",
+      "region"_a, "neighbors"_a = Connectivity::four);
+  def(module, "outer_boundary", &outer_boundary, &check_neighbors,
+      "Pixels outside the region that have a neighbor in it.", "region"_a, "neighbors"_a = Connectivity::four);
+  module.def(
+      "remove_noise",
+      [](const Region& region, const std::string& neighbors) {
+        using Neighbors = NoiseNeighbors;
+        const auto chosen = choice<Neighbors>(
+            "neighbors", neighbors, {{"n_4", Neighbors::n_4}, {"n_8", Neighbors::n_8}, {"n_48", Neighbors::n_48}});
+        check_neighbors(region, Connectivity::eight);
+        py::gil_scoped_release unlocked;
+        return remove_noise(region, chosen);
+      },
+      "Pixels that have a neighbor in the region, of 'n_4' by edges, 'n_8' by corners, 'n_48' by either.", "region"_a,
+      "neighbors"_a = "n_48");
+
   // Components and holes: components.h, fill.h
   def(module, "components", &components, kAnything, "The connected parts, in the order of their first runs.",
       "region"_a, "connectivity"_a = Connectivity::eight);
@@ -262,17 +348,19 @@ void bind_operators(py::module_& module) {
       "foreground"_a = Connectivity::eight);
   module.def(
       "fill_holes",
-      [](const Region& region, std::optional<std::int64_t> max_area_px, Connectivity foreground) {
+      [](const Region& region, std::optional<std::int64_t> max_area_px, Connectivity foreground,
+         std::int64_t min_area_px) {
         FillOptions options;
+        options.min_area_px = min_area_px;
         options.foreground = foreground;
         if (max_area_px) options.max_area_px = *max_area_px;
-        if (options.max_area_px < 0)
-          refuse("max_area_px", "is " + std::to_string(options.max_area_px) + ", must be >= 0");
+        if (options.min_area_px < 0 || options.max_area_px < 0)
+          refuse("area", "is " + std::to_string(std::min(options.min_area_px, options.max_area_px)) + ", must be >= 0");
         py::gil_scoped_release unlocked;
         return fill_holes(region, options);
       },
-      "The region with its holes filled; larger ones than max_area_px stay open.", "region"_a,
-      "max_area_px"_a = py::none(), "foreground"_a = Connectivity::eight);
+      "The region with its holes filled; smaller ones than min_area_px and larger ones than max_area_px stay open.",
+      "region"_a, "max_area_px"_a = py::none(), "foreground"_a = Connectivity::eight, "min_area_px"_a = 1);
 
   // Pixels, labels, polygons: raster.h
   module.def(
@@ -303,92 +391,35 @@ void bind_operators(py::module_& module) {
       "regions"_a, "window"_a);
   module.def(
       "region_from_polygon",
-      [](const ArrayLike& argument, const PixelBox& window) {
+      [](const ArrayLike& vertices, const PixelBox& window) {
         check_window(window);
-        const py::array_t<double, py::array::c_style | py::array::forcecast> vertices(argument.array);
-        if (vertices.size() > 0 && (vertices.ndim() != 2 || vertices.shape(1) != 2))
-          refuse("vertices", "are " + shown(vertices) + ", must be (N, 2): column, row");
-        std::vector<PixelPoint> points;
-        for (py::ssize_t i = 0; i < vertices.size() / 2; ++i) {
-          const double *corner = vertices.data() + 2 * i, limit = 1e9;
-          if (!(std::abs(corner[0]) <= limit && std::abs(corner[1]) <= limit))
-            refuse("vertices[" + std::to_string(i) + "]", "is not within +-1e9");
-          points.push_back({corner[0], corner[1]});
-        }
+        const auto corners = points_of("vertices", vertices);
         py::gil_scoped_release unlocked;
-        return region_from_polygon(points, window);
+        return region_from_polygon(corners, window);
       },
       "Pixels of the window whose centres are inside a closed polygon of (column, row) corners, by the even-odd rule.",
       "vertices"_a, "window"_a);
-}
 
-/// shape_features as one row of an array; the names are those of docs/regions.md.
-struct FeatureRow {
-  std::int64_t area;
-  double column, row;
-  std::int32_t x0, y0, x1, y1;
-  double rr, rc, cc, ra, rb, phi, anisometry, bulkiness, structure_factor, circularity;
-};
-
-FeatureRow row_of(const ShapeFeatures& f) {
-  return {f.area,        f.center.x,   f.center.y,   f.box.x0,           f.box.y0,     f.box.x1,
-          f.box.y1,      f.moments.rr, f.moments.rc, f.moments.cc,       f.ellipse.ra, f.ellipse.rb,
-          f.ellipse.phi, f.anisometry, f.bulkiness,  f.structure_factor, f.circularity};
-}
-
-py::array feature_array(const std::vector<Region>& regions) {
-  std::vector<FeatureRow> rows;
-  {
-    py::gil_scoped_release unlocked;
-    rows.reserve(regions.size());
-    for (const Region& region : regions) rows.push_back(row_of(shape_features(region)));
-  }
-  const auto count = static_cast<py::ssize_t>(rows.size());
-  return array_of(std::move(rows), {count});
-}
-
-void bind_features(py::module_& module) {
-  PYBIND11_NUMPY_DTYPE(FeatureRow, area, column, row, x0, y0, x1, y1, rr, rc, cc, ra, rb, phi, anisometry, bulkiness,
-                       structure_factor, circularity);
+  // Outlines: outline.h
   module.def(
-      "shape_features",
-      [](const Region& region) {
-        const py::array row = feature_array({region});
-        return py::dict(py::module_::import("builtins").attr("zip")(row.dtype().attr("names"), row.attr("item")(0)));
-      },
-      "Area, centre, box, second moments, equivalent ellipse and what follows from them; all 0 when empty.",
-      "region"_a);
-  module.def("feature_array", &feature_array,
-             "shape_features of many regions: a structured array of one row a region, with the dict's keys as fields.",
-             "regions"_a);
-  def(module, "area", &area, kAnything, "Number of pixels.", "region"_a);
-  def(module, "bounding_box", &bounding_box, kAnything, "Smallest box (x0, y0, x1, y1); all 0 when empty.", "region"_a);
-  def(module, "contour_length", &contour_length, kAnything, "Length of the outer contours [px].", "region"_a);
-  def(module, "compactness", &compactness, kAnything, "max(1, contour_length^2 / (4 pi area)).", "region"_a);
-  def(module, "euler_number", &euler_number, kAnything, "Components less holes.", "region"_a,
-      "foreground"_a = Connectivity::eight);
-  def(module, "hole_count", &hole_count, kAnything, "Number of holes.", "region"_a,
-      "foreground"_a = Connectivity::eight);
+      "outlines", [](const Region& region, Connectivity foreground) { return listed(outlines(region, foreground)); },
+      "Closed polygons along the pixels' edges, one around each component and each hole: (corners, is_hole), corners "
+      "(N, 2) of column, row.",
+      "region"_a, "foreground"_a = Connectivity::eight);
   module.def(
-      "convex_hull",
-      [](const Region& region) {
-        std::vector<double> numbers;
-        for (const PixelPoint& corner : convex_hull(region)) numbers.insert(numbers.end(), {corner.x, corner.y});
-        const auto count = static_cast<py::ssize_t>(numbers.size() / 2);
-        return array_of(std::move(numbers), {count, 2});
+      "center_outlines", [](const Region& region) { return listed(center_outlines(region)); },
+      "Closed polygons through the centres of the border pixels, as `outlines`.", "region"_a);
+  module.def(
+      "region_from_outlines",
+      [](const std::vector<std::pair<ArrayLike, bool>>& polygons, const PixelBox& window) {
+        check_window(window);
+        std::vector<Outline> corners;
+        for (const auto& [vertices, is_hole] : polygons) corners.push_back({points_of("corners", vertices), is_hole});
+        py::gil_scoped_release unlocked;
+        return region_from_outlines(corners, window);
       },
-      "(N, 2) corners (column, row) of the hull of the pixel centres, clockwise on the screen.", "region"_a);
-  def(module, "convex_area", &convex_area, kAnything, "Pixels in or on the convex hull.", "region"_a);
-  def(module, "convexity", &convexity, kAnything, "area / convex_area.", "region"_a);
-  def(
-      module, "rectangularity", &rectangularity,
-      [](const Region& region) {
-        // The rectangle with the same moments may be longer than the region's box, but not by more than its diagonal.
-        const PixelBox box = bounding_box(region);
-        const int diagonal = static_cast<int>(std::hypot(box.width(), box.height())) + 2;
-        check_box("box of the region, grown by its diagonal,", grown(box, diagonal, diagonal));
-      },
-      "How well the rectangle with the region's moments covers it; 1 for rectangles.", "region"_a);
+      "Pixels of the window whose centres are inside an odd number of the polygons; undoes `outlines`.", "outlines"_a,
+      "window"_a);
 }
 
 }  // namespace
@@ -396,7 +427,6 @@ void bind_features(py::module_& module) {
 void bind_region(py::module_& module) {
   bind_class(module);
   bind_operators(module);
-  bind_features(module);
 }
 
 }  // namespace tassilo::python

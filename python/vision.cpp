@@ -45,26 +45,18 @@ VisionOptions options_of(const py::dict& values) {
   }
 }
 
-template <class Path>
-bool is_path(const Path& object) {
-  return py::isinstance<py::str>(object) || py::hasattr(object, "__fspath__");
-}
-
-/// `source` read from its path, or the object itself.
-template <class T, class Read>
-T loaded(const py::object& source, Read read) {
-  if (is_path(source)) return read(source.cast<std::filesystem::path>());
-  return source.cast<T>();
-}
+bool is_path(const py::object& object) { return py::isinstance<py::str>(object) || py::hasattr(object, "__fspath__"); }
 
 SharedVision vision_from_parts(const py::object& colors, const py::object& camera, const py::object& field,
                                const py::dict& options) {
   VisionSetup setup;
   setup.colors = is_path(colors) ? read_colors(colors.cast<std::filesystem::path>()).table
-                                 : colors.cast<const Colors&>().file.table;
-  setup.field = loaded<FieldModel>(field, [](const auto& path) { return read_field(path.string()); });
+                                 : as<const Colors&>("colors", colors, "a ColorTable or a path").file.table;
+  setup.field = is_path(field) ? read_field(field.cast<std::filesystem::path>().string())
+                               : as<const FieldModel&>("field", field, "a Field, a name or a path");
   if (!camera.is_none()) {
-    const auto file = loaded<CameraFile>(camera, [](const auto& path) { return read_camera(path); });
+    const CameraFile file = is_path(camera) ? read_camera(camera.cast<std::filesystem::path>())
+                                            : as<const CameraFile&>("camera", camera, "a Camera or a path");
     if (!file.mount)
       refuse("camera", "has no camera_pose_in_robot, must have one; without a mount leave the camera out");
     setup.camera = file.model;

@@ -19,8 +19,8 @@ for name, quality in colors.trained_from["quality"].items():
 frame = list(tassilo.open_source("data/msl98/d01_approach/video.mkv"))[25]
 found = tassilo.segment(frame, colors)
 parts = components(opening(found["green"], disc(2.5)))
-features = feature_array(parts)
-print(f"\n{len(parts)} green parts, the largest has {features['area'].max()} px of {len(found['green'])}")
+features = feature_array(parts, ["area", "convexity"])
+print(f"\n{len(parts)} green parts, the largest has {features['area'].max():.0f} px of {len(found['green'])}")
 
 # %% The whole vision: positions in metres, with their bounds.
 vision = tassilo.Vision(colors, "data/msl98/d01_approach/camera.yaml", "msl98")

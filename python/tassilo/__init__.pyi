@@ -81,6 +81,18 @@ def transposed(region: Region) -> Region:
 def reflected(region: Region) -> Region:
     """Pixel (column, row) goes to (-column, -row)."""
 
+def mirrored_left_right(region: Region, about: float) -> Region:
+    """Pixel (column, row) goes to (2 about - column, row); about is a multiple of .5."""
+
+def mirrored_top_bottom(region: Region, about: float) -> Region:
+    """Pixel (column, row) goes to (column, 2 about - row); about is a multiple of .5."""
+
+def zoomed(region: Region, columns: float, rows: float) -> Region:
+    """The region drawn larger or smaller by factors > 0."""
+
+def partition_into_rectangles(region: Region, width: int, height: int) -> List[Region]:
+    """The region cut along a grid of cells of about this size."""
+
 def rectangle(width: int, height: int) -> Region:
     """Centred element of width x height pixels."""
 
@@ -99,6 +111,33 @@ def opening(region: Region, element: Region) -> Region:
 def closing(region: Region, element: Region) -> Region:
     """What the element cannot enter from outside."""
 
+def diamond(radius: int) -> Region:
+    """Element of the pixels at most `radius` steps along rows and columns away."""
+
+def octagon(radius: int) -> Region:
+    """Element of the pixels in a regular octagon, cheaper than a disc."""
+
+def line_element(length_px: float, angle: float = 0.0) -> Region:
+    """Element one pixel wide through the origin; angle counter-clockwise from right [rad]."""
+
+def top_hat(region: Region, element: Region) -> Region:
+    """What an opening takes away."""
+
+def bottom_hat(region: Region, element: Region) -> Region:
+    """What a closing adds."""
+
+def hit_or_miss(region: Region, hit: Region, miss: Region) -> Region:
+    """Places where `hit` lies in the region and `miss` outside."""
+
+def inner_boundary(region: Region, neighbors: Literal[4, 8] = 4) -> Region:
+    """Pixels of the region that have a neighbor outside."""
+
+def outer_boundary(region: Region, neighbors: Literal[4, 8] = 4) -> Region:
+    """Pixels outside the region that have a neighbor in it."""
+
+def remove_noise(region: Region, neighbors: str = 'n_48') -> Region:
+    """Pixels that have a neighbor in the region, of 'n_4' by edges, 'n_8' by corners, 'n_48' by either."""
+
 def components(region: Region, connectivity: Literal[4, 8] = 8) -> List[Region]:
     """The connected parts, in the order of their first runs."""
 
@@ -108,8 +147,8 @@ def label_runs(region: Region, connectivity: Literal[4, 8] = 8) -> Tuple[NDArray
 def holes(region: Region, foreground: Literal[4, 8] = 8) -> Region:
     """Background that the region cuts off from outside."""
 
-def fill_holes(region: Region, max_area_px: Optional[int] = None, foreground: Literal[4, 8] = 8) -> Region:
-    """The region with its holes filled; larger ones than max_area_px stay open."""
+def fill_holes(region: Region, max_area_px: Optional[int] = None, foreground: Literal[4, 8] = 8, min_area_px: int = 1) -> Region:
+    """The region with its holes filled; smaller ones than min_area_px and larger ones than max_area_px stay open."""
 
 def regions_of_labels(labels: NDArray[Any], count: int) -> List[Region]:
     """One region a label 0 .. count - 1 of a (height, width) array."""
@@ -123,17 +162,44 @@ def to_labels(regions: List[Region], window: Tuple[int, int, int, int]) -> NDArr
 def region_from_polygon(vertices: ArrayLike, window: Tuple[int, int, int, int]) -> Region:
     """Pixels of the window whose centres are inside a closed polygon of (column, row) corners, by the even-odd rule."""
 
-def shape_features(region: Region) -> Dict[str, Any]:
-    """Area, centre, box, second moments, equivalent ellipse and what follows from them; all 0 when empty."""
+def outlines(region: Region, foreground: Literal[4, 8] = 8) -> List[Tuple[NDArray[numpy.float64], bool]]:
+    """Closed polygons along the pixels' edges, one around each component and each hole: (corners, is_hole), corners (N, 2) of column, row."""
 
-def feature_array(regions: List[Region]) -> NDArray[Any]:
-    """shape_features of many regions: a structured array of one row a region, with the dict's keys as fields."""
+def center_outlines(region: Region) -> List[Tuple[NDArray[numpy.float64], bool]]:
+    """Closed polygons through the centres of the border pixels, as `outlines`."""
+
+def region_from_outlines(outlines: List[Tuple[ArrayLike, bool]], window: Tuple[int, int, int, int]) -> Region:
+    """Pixels of the window whose centres are inside an odd number of the polygons; undoes `outlines`."""
+
+def all_features() -> List[Any]:
+    """All features that are one number: name, unit, meaning."""
+
+def features(region: Region, names: Optional[List[str]] = None) -> Dict[str, Any]:
+    """Features of a region by their names, all where none are given; 0 for the empty region."""
+
+def feature_array(regions: List[Region], names: Optional[List[str]] = None) -> NDArray[Any]:
+    """`features` of many regions: a structured array with a row for each region and the names as fields."""
+
+def select(regions: List[Region], ranges: Dict[str, Any]) -> List[Region]:
+    """The regions whose features lie in closed ranges: select(parts, {'area': (50, 1e9), 'circularity': (.8, 1)}); put the cheap features first."""
+
+def sorted_by(regions: List[Region], feature: str, order: str = 'rising') -> List[Region]:
+    """The regions ordered by a feature, 'rising' or 'falling'; equal ones keep their order. C++ calls it `sorted`."""
+
+def sorted_by_first_point(regions: List[Region], order: str = 'rising') -> List[Region]:
+    """The regions ordered by their first pixels, top to bottom, then left to right."""
+
+def fill_up(region: Region, ranges: Dict[str, Any], foreground: Literal[4, 8] = 8) -> Region:
+    """The region with those of its holes filled whose features lie in closed ranges."""
 
 def area(region: Region) -> int:
     """Number of pixels."""
 
 def bounding_box(region: Region) -> Tuple[int, int, int, int]:
     """Smallest box (x0, y0, x1, y1); all 0 when empty."""
+
+def orientation(region: Region) -> float:
+    """Direction of the ellipse's long axis towards the pixel farthest from the centre, (-pi, pi]."""
 
 def contour_length(region: Region) -> float:
     """Length of the outer contours [px]."""
@@ -158,6 +224,60 @@ def convexity(region: Region) -> float:
 
 def rectangularity(region: Region) -> float:
     """How well the rectangle with the region's moments covers it; 1 for rectangles."""
+
+def smallest_rectangle(region: Region) -> Dict[str, Any]:
+    """The rectangle of least area around all pixel centres: column, row, half_length, half_width, phi."""
+
+def smallest_circle(region: Region) -> Dict[str, Any]:
+    """The smallest circle around all pixel centres: column, row, radius."""
+
+def convex_region(region: Region) -> Region:
+    """Pixels in or on the convex hull."""
+
+def inner_circle(region: Region) -> Dict[str, Any]:
+    """The largest circle inside: column, row, radius."""
+
+def inner_rectangle(region: Region) -> Tuple[int, int, int, int]:
+    """The box (x0, y0, x1, y1) of most pixels that lies in the region."""
+
+def diameter(region: Region) -> Dict[str, Any]:
+    """Two pixels as far apart as any: first and second (column, row), length."""
+
+def feret_diameters(region: Region) -> Dict[str, Any]:
+    """Largest and smallest extent over all directions: max, max_angle, min, min_angle."""
+
+def feret_diameter(region: Region, angle: float) -> float:
+    """Extent along a direction, counter-clockwise from right [rad]."""
+
+def distance_to(region: Region, window: Tuple[int, int, int, int], metric: str = 'euclidean_squared') -> NDArray[numpy.int32]:
+    """(height, width) of int32: for each pixel of the window the distance to the nearest pixel of the region, 2^31 - 1 for the empty region; metric 'euclidean_squared', 'chessboard' or 'city_block'."""
+
+def distance_inside(region: Region, window: Tuple[int, int, int, int], metric: str = 'euclidean_squared') -> NDArray[numpy.int32]:
+    """(height, width) of int32: for each pixel of the window the distance to the nearest pixel outside the region."""
+
+def gray_histogram(region: Region, image: Union[Frame, NDArray[Any]]) -> NDArray[numpy.int64]:
+    """(256,) numbers of the region's pixels with each value of a gray image, or brightness of a frame."""
+
+def gray_features(region: Region, image: Union[Frame, NDArray[Any]]) -> Dict[str, Any]:
+    """count, mean, deviation, min, max, median, entropy of the region's pixels."""
+
+def gray_quantile(region: Region, image: Union[Frame, NDArray[Any]], share: float) -> int:
+    """The smallest value that at least this share of the region's pixels does not exceed."""
+
+def gray_moments(region: Region, image: Union[Frame, NDArray[Any]]) -> Dict[str, Any]:
+    """Moments with each pixel weighted by its value: volume, column, row, rr, rc, cc, ra, rb, phi."""
+
+def read_png_region(path: Union[str, os.PathLike[str]]) -> Region:
+    """The pixels of a gray PNG that are not 0."""
+
+def write_png_region(path: Union[str, os.PathLike[str]], region: Region, window: Tuple[int, int, int, int]) -> None:
+    """Writes a mask of the window, 255 in the region."""
+
+def coco_json(region: Region, width: int, height: int, counts: str = 'string') -> str:
+    """The region as a COCO mask of an image of this size: run lengths as a 'string' or a 'list', in JSON."""
+
+def region_from_coco_json(text: str) -> Region:
+    """The region of such a text."""
 
 class Frame:
     """One camera image in a camera's own YUV layout, with what is known about it.

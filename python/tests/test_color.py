@@ -100,6 +100,12 @@ def test_wrong_arguments_are_refused_in_words(colors, call):
         call(colors)
 
 
+def test_wrong_types_are_type_errors():
+    for bad in ((1, Region(), "red"), (picture(), 2, "red"), (picture(), Region.from_box((0, 0, 5, 5)), 3)):
+        with pytest.raises(TypeError, match="must be"):
+            tassilo.train_colors([bad])
+
+
 def test_nothing_to_learn_from_is_an_error():
     for nothing in ([], [(picture(), Region.from_box((0, 0, 5, 5)), "no_color")]):
         with pytest.raises(tassilo.Error, match="sample"):

@@ -133,7 +133,7 @@ def test_components_and_holes():
     assert count == 2 and len(labels) == len(region.runs)
     assert tassilo.holes(region) == Region([(2, 2, 3)])
     assert tassilo.fill_holes(region) == region | tassilo.holes(region)
-    assert tassilo.fill_holes(region, max_area_px=0) == region
+    assert tassilo.fill_holes(region, max_area_px=0) == tassilo.fill_holes(region, min_area_px=2) == region
     assert tassilo.euler_number(region) == 0 and tassilo.hole_count(region) == 1
     with pytest.raises(ValueError, match="connectivity is 6, must be 4 or 8"):
         tassilo.components(region, 6)
@@ -156,30 +156,46 @@ def test_polygons():
             tassilo.region_from_polygon(bad, (0, 0, 10, 10))
 
 
-def test_features_are_those_of_the_pixels():
-    mask = random_mask(6)
+def test_boundaries_hats_and_noise_are_their_definitions():
+    for seed in range(5):
+        region = Region.from_mask(random_mask(seed))
+        square, cross = tassilo.rectangle(3, 3), tassilo.diamond(1)
+        assert tassilo.inner_boundary(region) == region - tassilo.erosion(region, cross)
+        assert tassilo.outer_boundary(region, neighbors=8) == tassilo.dilation(region, square) - region
+        assert tassilo.top_hat(region, cross) == region - tassilo.opening(region, cross)
+        assert tassilo.bottom_hat(region, cross) == tassilo.closing(region, cross) - region
+        ring = square - Region([(0, 0, 1)])
+        assert tassilo.remove_noise(region) == region & tassilo.dilation(region, ring)
+        assert tassilo.remove_noise(region, "n_4") == region & tassilo.dilation(region, cross - Region([(0, 0, 1)]))
+        assert tassilo.hit_or_miss(region, Region([(0, 0, 1)]), ring) == region - tassilo.remove_noise(region)
+        assert tassilo.hit_or_miss(region, cross, Region()) == tassilo.erosion(region, cross)
+    with pytest.raises(ValueError, match="neighbors is 'n_9', must be one of n_4, n_8, n_48"):
+        tassilo.remove_noise(region, "n_9")
+
+
+def test_elements():
+    assert len(tassilo.diamond(2)) == 13 and tassilo.octagon(1) == tassilo.diamond(1)
+    assert tassilo.line_element(5) == Region([(0, -2, 3)])
+    assert tassilo.line_element(5, np.pi / 2) == tassilo.transposed(tassilo.line_element(5))
+
+
+def test_transforms():
+    mask = random_mask(7)
     region = Region.from_mask(mask)
-    rows, columns = np.nonzero(mask)
-    shape = tassilo.shape_features(region)
-    assert shape["area"] == mask.sum()
-    assert shape["column"] == pytest.approx(columns.mean()) and shape["row"] == pytest.approx(rows.mean())
-    assert shape["rr"] == pytest.approx(rows.var()) and shape["cc"] == pytest.approx(columns.var())
-    assert tuple(shape[k] for k in ("x0", "y0", "x1", "y1")) == region.box == tassilo.bounding_box(region)
-    assert all(isinstance(value, (int, float)) for value in shape.values())
+    assert tassilo.mirrored_left_right(region, (mask.shape[1] - 1) / 2) == Region.from_mask(mask[:, ::-1].copy())
+    assert tassilo.mirrored_top_bottom(region, (mask.shape[0] - 1) / 2) == Region.from_mask(mask[::-1])
+    assert tassilo.zoomed(region, 2, 3) == Region.from_mask(mask.repeat(3, 0).repeat(2, 1))
+    parts = tassilo.partition_into_rectangles(region, 8, 8)
+    assert tassilo.union_of(parts) == region and sum(map(len, parts)) == len(region)
 
 
-def test_feature_arrays_have_the_keys_of_the_dict_as_fields():
-    regions = [Region.from_mask(random_mask(seed)) for seed in range(5)] + [Region()]
-    array = tassilo.feature_array(regions)
-    assert array.shape == (6,)
-    for region, row in zip(regions, array):
-        assert dict(zip(array.dtype.names, row.item())) == tassilo.shape_features(region)
-    assert (array["area"] > 300).sum() == sum(len(r) > 300 for r in regions)
-
-
-def test_single_features():
-    box = Region.from_box((0, 0, 8, 5))
-    assert tassilo.convex_hull(box).tolist() == [[0, 0], [7, 0], [7, 4], [0, 4]]
-    assert tassilo.convex_area(box) == 40 and tassilo.convexity(box) == 1 and tassilo.rectangularity(box) == pytest.approx(1)
-    assert tassilo.contour_length(box) == 22 and tassilo.compactness(box) == 1
-    assert tassilo.convex_hull(Region()).shape == (0, 2)
+def test_outlines_come_back():
+    for seed in range(5):
+        mask = random_mask(seed)
+        region = Region.from_mask(mask)
+        for foreground in (4, 8):
+            lines = tassilo.outlines(region, foreground)
+            assert tassilo.region_from_outlines(lines, window(mask)) == region
+            assert sum(is_hole for _, is_hole in lines) == tassilo.hole_count(region, foreground)
+    (corners, is_hole), = tassilo.center_outlines(Region.from_box((1, 2, 5, 6)))
+    assert not is_hole and sorted(map(tuple, corners)) == [(1, 2), (1, 5), (4, 2), (4, 5)]

@@ -67,6 +67,13 @@ def test_options_are_those_of_the_robot_file(colors, frame):
             Vision(colors, options=bad)
 
 
+def test_wrong_types_are_type_errors(colors):
+    for call in (lambda: Vision(3), lambda: Vision(None), lambda: Vision(colors, 3), lambda: Vision(colors, field=None),
+                 lambda: Vision(colors)(3), lambda: Vision(colors, options=[1])):
+        with pytest.raises(TypeError):
+            call()
+
+
 def test_frames_that_do_not_fit_are_refused(vision, colors):
     small = np.zeros((4, 4, 3), np.uint8)
     with pytest.raises(tassilo.Error, match="4x4"):
