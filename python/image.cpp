@@ -224,7 +224,7 @@ SourceOptions source_options(const std::filesystem::path& location, ColorRange i
 void bind_source(py::module_& module) {
   py::class_<LockedSource, std::shared_ptr<LockedSource>>(module, "FrameSource",
                                                           "An iterator over the frames of a video; see open_source.")
-      .def("__iter__", [](py::object self) { return self; })
+      .def("__iter__", [](LockedSource& self) -> LockedSource& { return self; })
       .def("__next__",
            [](LockedSource& self) {
              std::optional<Frame> frame;

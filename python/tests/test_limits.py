@@ -2,8 +2,10 @@
 
 A broken promise would end this process, which pytest cannot report: so the calls run in a process of their own.
 """
+import ctypes
 import inspect
 import itertools
+import mmap
 import random
 import subprocess
 import sys
@@ -12,7 +14,8 @@ import numpy as np
 import pytest
 
 import tassilo
-from tassilo import Region
+from conftest import DATA
+from tassilo import Frame, Region
 
 LOW, HIGH = -32768, 32767
 
@@ -54,11 +57,82 @@ def call_everything():
     print(called, refused)
 
 
+def call_with_junk():
+    """Every function and constructor with arguments of all kinds, most of them wrong."""
+    chance = random.Random(3)
+    image = np.random.default_rng(3).integers(0, 256, (20, 30, 3), np.uint8)
+    regions = [Region(), Region.from_box((0, 0, 9, 9)), Region([(HIGH, HIGH - 1, HIGH)]), Region([(LOW, LOW, HIGH)])]
+    values = [None, 0, 1, -1, 3, 2**31, 2**70, 1.5, -1e300, float("nan"), float("inf"), "red", "limited", "rising", "", b"x",
+              (0, 0, 5, 5), (0, 0, HIGH, 3), (-10**9, 0, 10**9, 3), (1, 2), [], {}, {"area": (0, 5)}, [(0, 0), (3, 0), (3, 3)],
+              [(0, float("nan"))] * 3, [(np.zeros((4, 2)), True)], image, image[:, :, 0], image[:, ::2, 0], image / 2,
+              np.zeros((0, 3), int), np.zeros((5, 0), np.uint8), np.array(3), Frame.rgb(image), *regions, regions, object()]
+    calls = [getattr(tassilo, name) for name in tassilo.__all__ if not name.startswith("write")]
+    calls += [Region.from_box, Region.from_mask, Frame.rgb, Frame.yuyv, Frame.nv12, Frame.yuv420p]
+    done = 0
+    for _ in range(20000):
+        try:
+            chance.choice(calls)(*chance.choices(values, k=chance.randint(0, 4)))
+            done += 1
+        except (ValueError, TypeError, tassilo.Error):
+            pass
+    print(done)
+
+
+def guarded(shape, at_end):
+    """Random bytes in memory of their own; what lies behind (or before) them must not be touched."""
+    count = int(np.prod(shape))
+    size = -(-count // mmap.PAGESIZE) * mmap.PAGESIZE
+    libc = ctypes.CDLL(None)
+    libc.mmap.restype = ctypes.c_void_p
+    libc.mmap.argtypes = [ctypes.c_void_p, ctypes.c_size_t, ctypes.c_int, ctypes.c_int, ctypes.c_int, ctypes.c_long]
+    libc.mprotect.argtypes = [ctypes.c_void_p, ctypes.c_size_t, ctypes.c_int]
+    start = libc.mmap(None, size + 2 * mmap.PAGESIZE, mmap.PROT_READ | mmap.PROT_WRITE,
+                      mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS, -1, 0)
+    for page in (start, start + mmap.PAGESIZE + size):
+        assert libc.mprotect(page, mmap.PAGESIZE, 0) == 0
+    first = start + mmap.PAGESIZE + (size - count if at_end else 0)
+    array = np.ctypeslib.as_array((ctypes.c_uint8 * count).from_address(first)).reshape(shape)
+    array[...] = np.random.default_rng(count).integers(0, 256, shape, np.uint8)
+    return array
+
+
+def see_guarded_frames():
+    colors = tassilo.train_colors(DATA / "train_div/samples.yaml")
+    vision = tassilo.Vision(colors)
+    for at_end, width, height in itertools.product((True, False), (*range(1, 70), 127, 128, 129, 257), (1, 2, 3)):
+        def of(*shape):
+            return guarded(shape, at_end)
+
+        half, low = (width + 1) // 2, (height + 1) // 2
+        frames = [Frame.yuv422p(of(height, width), of(height, half), of(height, half)),
+                  Frame.yuv420p(of(height, width), of(low, half), of(low, half)), Frame.nv12(of(height, width), of(low, half, 2))]
+        if width % 2 == 0:
+            frames += [Frame.yuyv(of(height, width, 2)), Frame.uyvy(of(height, width, 2))]
+        for frame in frames:
+            vision(frame)
+            frame.to_rgb()
+            tassilo.gray_features(Region.from_box((0, 0, width, height)), frame)
+    print(width)
+
+
+def in_a_process_of_its_own(name):
+    """The numbers `name` printed; fails when the interpreter did not live to the end."""
+    ended = subprocess.run([sys.executable, __file__, name], capture_output=True, text=True)
+    assert ended.returncode == 0, ended.stderr
+    return [int(number) for number in ended.stdout.split()]
+
+
+def test_junk_is_refused():
+    assert in_a_process_of_its_own("call_with_junk")[0] > 100
+
+
+def test_frames_are_read_to_their_last_byte_and_no_further():
+    assert in_a_process_of_its_own("see_guarded_frames") == [257]
+
+
 def test_operators_take_or_refuse_regions_at_the_ends_of_16_bit():
     assert sum(count == 2 for _, count in operators_on_regions()) >= 8
-    ended = subprocess.run([sys.executable, __file__], capture_output=True, text=True)
-    assert ended.returncode == 0, ended.stderr
-    called, refused = map(int, ended.stdout.split())
+    called, refused = in_a_process_of_its_own("call_everything")
     assert called > 5000 and refused > 1000
 
 
@@ -102,4 +176,4 @@ def test_other_types_are_type_errors():
 
 
 if __name__ == "__main__":
-    call_everything()
+    globals()[sys.argv[1]]()
