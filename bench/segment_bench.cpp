@@ -79,11 +79,10 @@ void BM_Opening3x3(benchmark::State& state, Kernel kernel) {
 void BM_Chain(benchmark::State& state, Kernel kernel) {
   const BenchFrames& frames = bench_frames(static_cast<int>(state.range(0)));
   use_kernel(kernel);
-  Segmentation segmentation, opened;
+  Segmentation opened;
   std::size_t next = 0, parts = 0;
   for (auto _ : state) {
-    segmentation = segment(frames.next(next).view, frames.classifier, std::move(segmentation));
-    opened = opening3x3(segmentation, std::move(opened));
+    opened = segment_opened(frames.next(next).view, frames.classifier, std::move(opened));
     for (const ColorClass color : kColorClasses) {
       const auto blobs = component_features(opened.of(color));
       parts += blobs.size();

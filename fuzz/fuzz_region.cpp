@@ -8,9 +8,16 @@
 #include "tassilo/base/contract.h"
 #include "tassilo/region/algebra.h"
 #include "tassilo/region/components.h"
+#include "tassilo/region/distance.h"
+#include "tassilo/region/enclosing.h"
+#include "tassilo/region/features.h"
 #include "tassilo/region/fill.h"
+#include "tassilo/region/inscribed.h"
 #include "tassilo/region/morphology.h"
+#include "tassilo/region/outline.h"
+#include "tassilo/region/partition.h"
 #include "tassilo/region/region.h"
+#include "tassilo/region/transform.h"
 
 using namespace tassilo;
 
@@ -77,6 +84,25 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       expects(components(part, connectivity).size() == 1, "a component is connected");
     }
     expects(total == area(a), "components are disjoint");
+  }
+
+  const PixelBox box = bounding_box(a);
+  for (const Connectivity connectivity : {Connectivity::four, Connectivity::eight})
+    expects(region_from_outlines(outlines(a, connectivity), box) == a, "outlines give the region back");
+  const Region convex = convex_region(a);
+  expects(difference(a, convex).empty() && area(convex) == convex_area(a), "the convex hull's pixels");
+  expects(difference(Region::from_box(inner_rectangle(a)), a).empty(), "the inner box lies within");
+  const int about = bytes.below(9) - 4;
+  expects(mirrored_left_right(mirrored_top_bottom(a, about), about) == translated(reflected(a), {2 * about, 2 * about}),
+          "both mirrors turn by half");
+  const int wider = 1 + bytes.below(3), higher = 1 + bytes.below(3);
+  expects(area(zoomed(a, {double(wider), double(higher)})) == area(a) * wider * higher, "zoom repeats pixels");
+  expects(union_of(partition_into_rectangles(a, {1 + bytes.below(9), 1 + bytes.below(9)})) == a, "parts are all of it");
+  if (!b.empty() && !box.empty()) {
+    const DistanceImage to_b = distance_to(b, box);
+    const Pixels near = sum(pixels_b, pixels_of(disc(1.5)));
+    for (const auto& [r, c] : pixels_a)
+      expects((to_b.at(c, r) <= 2) == near.contains({r, c}), "near pixels are in the dilation with a disc");
   }
   return 0;
 }

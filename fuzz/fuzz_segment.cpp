@@ -1,10 +1,11 @@
-// Segmentation of a frame equals the definition, pixel by pixel, for any table, format and size.
+// Segmentation of a frame equals the definition, pixel by pixel, for any table, format and size, and for every kernel.
 #include <algorithm>
 #include <cstdint>
 #include <vector>
 
 #include "bytes.h"
 #include "tassilo/base/contract.h"
+#include "tassilo/base/kernel.h"
 #include "tassilo/color/color_table.h"
 #include "tassilo/color/segment.h"
 #include "tassilo/image/frame.h"
@@ -35,7 +36,19 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
 
   const FrameView& view = buffer.frame.view;
-  const Segmentation segmentation = segment(view, Classifier(table));
+  const Classifier classifier(table);
+  const Segmentation segmentation = segment(view, classifier);
+  const Segmentation opened = segment_opened(view, classifier);
+  // Every other kernel says the same.
+  const Kernel fastest = kernel_in_use();
+  for (const Kernel kernel : supported_kernels()) {
+    use_kernel(kernel);
+    const Segmentation other = segment(view, classifier);
+    expects(other.labels == segmentation.labels && other.regions == segmentation.regions, "kernels segment alike");
+    const Segmentation other_opened = segment_opened(view, classifier);
+    expects(other_opened.labels == opened.labels && other_opened.regions == opened.regions, "kernels open alike");
+  }
+  use_kernel(fastest);
   std::vector<ColorClass> labels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   for (const ColorClass color : kColorClasses) {
     for (const PixelRun& run : segmentation.of(color).runs()) {

@@ -79,6 +79,12 @@ class Usage(CliTest):
         self.assertRegex(self.succeeds("--version").out, r"^\d+\.\d+\.\d+\n$")
         self.assertIn("mount_angle_sigma", self.succeeds("info", "--options").out)
 
+    def test_kernels(self):
+        self.assertIn("kernel: ", self.succeeds("info").out)
+        plain = {**os.environ, "TASSILO_KERNEL": "plain"}
+        self.assertIn("kernel: plain, chosen by TASSILO_KERNEL", self.succeeds("info", env=plain).out)
+        self.fails("info", env={**os.environ, "TASSILO_KERNEL": "mmx"}, says=("TASSILO_KERNEL: is 'mmx'", "plain"))
+
 
 class RobotFiles(CliTest):
     def robot(self, text):

@@ -9,8 +9,8 @@ usage() {
 usage: tools/install_deps.sh [--references]
   Installs the missing packages through apt-get (tested on Debian 12; about 300 MB to download on
   a bare machine) and the web UI's packages through npm where webui/ exists. Does nothing when nothing is missing.
-  --references  also clang (for fuzzing) and the OpenCV modules that some tests compare with (about 75 MB more);
-                without them those tests are skipped and listed
+  --references  also clang (for fuzzing), the OpenCV modules that some tests compare with, and Leptonica, with which a
+                benchmark does (about 80 MB more); without them those tests are skipped and listed
 EOF
 }
 
@@ -33,7 +33,7 @@ packages=(
   pybind11-dev python3-dev python3-pytest
 )
 # imgproc and calib3d alone: the whole libopencv-dev is twice as large.
-if [ "$references" = 1 ]; then packages+=(clang libopencv-imgproc-dev libopencv-calib3d-dev); fi
+if [ "$references" = 1 ]; then packages+=(clang libopencv-imgproc-dev libopencv-calib3d-dev libleptonica-dev); fi
 if [ -d webui ]; then packages+=(nodejs npm); fi
 
 is_installed() { dpkg-query --show --showformat='${db:Status-Status}\n' "$1" 2>/dev/null | grep -qx installed; }

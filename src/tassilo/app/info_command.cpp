@@ -1,8 +1,11 @@
 #include <fmt/core.h>
 
+#include <cstdlib>
 #include <memory>
+#include <string>
 
 #include "tassilo/app/commands.h"
+#include "tassilo/base/kernel.h"
 #include "tassilo/files/field_file.h"
 #include "tassilo/vision/options.h"
 
@@ -18,7 +21,15 @@ void print_options() {
 }
 
 void print_overview() {
-  fmt::print("tassilo {}\n\nfolders of shipped files, first hit wins:\n", TASSILO_VERSION);
+  std::string others;
+  for (const Kernel kernel : supported_kernels())
+    if (kernel != kernel_in_use()) others += (others.empty() ? "" : ", ") + std::string(to_string(kernel));
+  const char* const chosen = std::getenv("TASSILO_KERNEL");
+  fmt::print("tassilo {}\n\nkernel: {}, {}; this machine also runs {} (TASSILO_KERNEL=name chooses)\n", TASSILO_VERSION,
+             to_string(kernel_in_use()),
+             chosen != nullptr ? "chosen by TASSILO_KERNEL" : "the fastest that this machine runs",
+             others.empty() ? "no other" : others);
+  fmt::print("\nfolders of shipped files, first hit wins:\n");
   for (const auto& folder : config_folders()) fmt::print("  {}\n", folder.string());
 }
 

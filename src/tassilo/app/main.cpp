@@ -2,6 +2,7 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <string>
@@ -10,6 +11,7 @@
 #include "tassilo/app/commands.h"
 #include "tassilo/app/usage.h"
 #include "tassilo/base/error.h"
+#include "tassilo/base/kernel.h"
 
 namespace tassilo {
 namespace {
@@ -67,6 +69,7 @@ int main(int argc, char** argv) {
     return code == 0 ? 0 : 2;
   }
   try {
+    if (const char* kernel = std::getenv("TASSILO_KERNEL")) use_kernel(std::string_view(kernel));
     const int code = command();
     flush_standard_output();
     return code;

@@ -71,8 +71,7 @@ void use_kernel(std::string_view name) {
     if (to_string(kernel) == name) return use_kernel(kernel);
     known += (known.empty() ? "" : ", ") + std::string(to_string(kernel));
   }
-  throw Error("kernel '" + std::string(name) + "'",
-              "is not among those that this machine runs, must be one of " + known);
+  throw Error("TASSILO_KERNEL", "is '" + std::string(name) + "', must be one that this machine runs: " + known);
 }
 
 }  // namespace tassilo

@@ -25,8 +25,8 @@ Kernel kernel_in_use();
 /// Uses another from now on, on all threads; it must be a supported one. For measuring and for tests: results are the
 /// same.
 void use_kernel(Kernel kernel);
-/// The same by name, as the program does with TASSILO_KERNEL. Throws Error when there is no such kernel or this machine
-/// does not run it, naming those it does.
+/// The same by name, as the program does with the environment's TASSILO_KERNEL. Throws Error when there is no such
+/// kernel or this machine does not run it, naming those it does.
 void use_kernel(std::string_view name);
 
 }  // namespace tassilo

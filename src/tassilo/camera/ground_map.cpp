@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "tassilo/base/contract.h"
-
 namespace tassilo {
 
 GroundMap::GroundMap(const MountedCamera& camera, double max_range)
@@ -18,14 +16,6 @@ GroundMap::GroundMap(const MountedCamera& camera, double max_range)
       cells_.push_back(point ? Cell{static_cast<float>(point->x), static_cast<float>(point->y)} : Cell{none, none});
     }
   }
-}
-
-std::optional<FloorPoint> GroundMap::at(int column, int row) const {
-  expects(column >= 0 && column < width_ && row >= 0 && row < height_, "GroundMap::at: the pixel is in the image");
-  const Cell cell =
-      cells_[static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(column)];
-  if (std::isnan(cell.x)) return std::nullopt;
-  return FloorPoint{cell.x, cell.y};
 }
 
 // The floor point is P = C + s d with the ray's direction d and s = (height - C.z) / d.z. A change of d moves it by

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <vector>
 
+#include "tassilo/base/contract.h"
 #include "tassilo/camera/mount.h"
 
 namespace tassilo {
@@ -19,7 +21,13 @@ class GroundMap {
   int height() const { return height_; }
   /// Floor point at the pixel's centre; nothing at and above the horizon or beyond max_range. The pixel must be in the
   /// image.
-  std::optional<FloorPoint> at(int column, int row) const;
+  std::optional<FloorPoint> at(int column, int row) const {
+    expects(column >= 0 && column < width_ && row >= 0 && row < height_, "GroundMap::at: the pixel is in the image");
+    const Cell cell =
+        cells_[static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(column)];
+    if (std::isnan(cell.x)) return std::nullopt;
+    return FloorPoint{cell.x, cell.y};
+  }
 
  private:
   struct Cell {

@@ -62,9 +62,12 @@ std::optional<RobotPoint> MountedCamera::ray(PixelPoint pixel) const {
 
 std::optional<FloorPoint> MountedCamera::floor_point(PixelPoint pixel, double height, double max_range) const {
   const auto direction = ray(pixel);
-  if (!direction) return std::nullopt;
-  const double reach = (height - mount_.z) / direction->z;
-  const FloorPoint from_foot{reach * direction->x, reach * direction->y};
+  return direction ? floor_along(*direction, height, max_range) : std::nullopt;
+}
+
+std::optional<FloorPoint> MountedCamera::floor_along(RobotPoint direction, double height, double max_range) const {
+  const double reach = (height - mount_.z) / direction.z;
+  const FloorPoint from_foot{reach * direction.x, reach * direction.y};
   if (!(reach > 0 && dot(from_foot, from_foot) <= max_range * max_range)) return std::nullopt;
   return FloorPoint{mount_.x, mount_.y} + from_foot;
 }

@@ -43,6 +43,8 @@ class MountedCamera {
   /// Where the pixel's ray meets the horizontal plane at `height` (default: the floor) in front of the camera; nothing
   /// when it does not, or beyond `max_range` from the camera's foot, where a ray is as good as level. [m]
   std::optional<FloorPoint> floor_point(PixelPoint pixel, double height = 0, double max_range = 100) const;
+  /// Likewise for a ray's direction in the robot frame, of any length.
+  std::optional<FloorPoint> floor_along(RobotPoint direction, double height = 0, double max_range = 100) const;
 
  private:
   CameraModel model_;

@@ -146,6 +146,23 @@ TEST(Segment, HoldsAsManyRunsAsThereCanBe) {
   });
 }
 
+TEST(SegmentOpened, IsTheOpeningOfTheSegmentation) {
+  for_each_kernel([] {
+    std::mt19937 random(9);
+    Segmentation recycled;
+    for (int width = 0; width <= 200; ++width) {
+      SCOPED_TRACE(width);
+      const PixelFormat format = kFormats[static_cast<std::size_t>(width) % kFormats.size()];
+      const Classifier classifier(ragged_table(random));
+      const Frame frame = random_frame(format, width, static_cast<int>(random() % 12), random);
+      recycled = segment_opened(frame.view, classifier, std::move(recycled));
+      const Segmentation expected = opening3x3(segment(frame.view, classifier));
+      ASSERT_EQ(recycled.labels, expected.labels);
+      ASSERT_EQ(recycled.regions, expected.regions);
+    }
+  });
+}
+
 // All at once is each for itself.
 TEST(Opening3x3, OpensEveryRegion) {
   for_each_kernel([] {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "tassilo/base/error.h"
@@ -29,35 +30,69 @@ struct RimPoint {
   bool hidden = false;  ///< A robot begins there: the ball may go on behind it.
 };
 
-/// Rim of a segment without what the image border cuts. O(pixels of the rim x log runs).
+/// Calls visit(c) for each column of a run that is in none of `others`, the runs of a row beside it.
+template <class Visit>
+void for_each_open(const PixelRun& run, std::span<const PixelRun> others, Visit visit) {
+  int c = run.begin;
+  for (const PixelRun& other : others) {
+    for (; c < std::min(other.begin, run.end); ++c) visit(c);
+    c = std::max<int>(c, other.end);
+  }
+  for (; c < run.end; ++c) visit(c);
+}
+
+/// Rim of a segment without what the image border cuts. O(pixels of the rim + runs).
 RecycledVector<RimPoint> rim_of(const View& view, const Region& segment) {
   RecycledVector<RimPoint> rim;
   const auto add = [&](int c, int r, int dc, int dr) {
     if (!view.inside(c + dc, r + dr)) return;
     // One pixel of mixed color may lie between ball and robot.
-    const bool hidden = is_robot_color(view.color(c + dc, r + dr)) ||
-                        (view.inside(c + 2 * dc, r + 2 * dr) && is_robot_color(view.color(c + 2 * dc, r + 2 * dr)));
+    const bool hidden =
+        view.is_robot(c + dc, r + dr) || (view.inside(c + 2 * dc, r + 2 * dr) && view.is_robot(c + 2 * dc, r + 2 * dr));
     rim.push_back({{c + dc / 2.0, r + dr / 2.0}, hidden});
   };
-  for (const PixelRun& run : segment.runs()) {
-    add(run.begin, run.row, -1, 0);
-    add(run.end - 1, run.row, 1, 0);
-    for (int c = run.begin; c < run.end; ++c) {
-      if (!contains(segment, c, run.row - 1)) add(c, run.row, 0, -1);
-      if (!contains(segment, c, run.row + 1)) add(c, run.row, 0, 1);
+  const auto runs = segment.runs();
+  std::span<const PixelRun> above;
+  for (std::size_t i = 0; i < runs.size();) {
+    const auto row_at = [&](std::size_t from) {
+      std::size_t end = from;
+      while (end < runs.size() && runs[end].row == runs[from].row) ++end;
+      return runs.subspan(from, end - from);
+    };
+    const auto here = row_at(i);
+    i += here.size();
+    const int row = here.front().row;
+    std::span<const PixelRun> below;
+    if (i < runs.size() && runs[i].row == row + 1) below = row_at(i);
+    if (!above.empty() && above.front().row != row - 1) above = {};
+    for (const PixelRun& run : here) {
+      add(run.begin, row, -1, 0);
+      add(run.end - 1, row, 1, 0);
+      for_each_open(run, above, [&](int c) { add(c, row, 0, -1); });
+      for_each_open(run, below, [&](int c) { add(c, row, 0, 1); });
     }
+    above = here;
   }
   return rim;
 }
 
+/// How a segment is looked at: with the mount as calibrated, or with the robot nodding; with or without the rim where a
+/// robot's colors begin.
+struct Attempt {
+  const MountedCamera& camera;
+  double nod_sigma = 0;  ///< Of the camera's pitch, beyond what the mount's calibration leaves. [rad]
+  bool with_hidden = false;
+};
+
 /// Enough of the rim for a first fit, evenly thinned.
-RecycledVector<PixelPoint> positions(const RecycledVector<RimPoint>& rim, bool with_hidden) {
+RecycledVector<RobotPoint> rays_of(const View& view, const Attempt& attempt, const RecycledVector<RimPoint>& rim) {
   constexpr std::size_t enough = 64;
   const std::size_t step = std::max<std::size_t>(1, rim.size() / enough);
-  RecycledVector<PixelPoint> points;
+  RecycledVector<RobotPoint> rays;
   for (std::size_t i = 0; i < rim.size(); i += step)
-    if (with_hidden || !rim[i].hidden) points.push_back(rim[i].at);
-  return points;
+    if (attempt.with_hidden || !rim[i].hidden)
+      if (const auto ray = view.optics->rays.at(rim[i].at)) rays.push_back(attempt.camera.robot_from_optical(*ray));
+  return rays;
 }
 
 /// A first guess: the middle of the segment at the ball's height above the floor; if its ray does not go down that far,
@@ -77,26 +112,26 @@ std::optional<RestingSphere> first_guess(const View& view, const MountedCamera& 
   return RestingSphere{*foot, radius};
 }
 
-/// Sub-pixel edges along the outline of a sphere; left out: beyond the border and where a robot hides the rim.
-RecycledVector<PixelPoint> outline_edges(const View& view, const MountedCamera& camera, const RestingSphere& sphere,
-                                         bool with_hidden) {
-  RecycledVector<PixelPoint> edges;
-  const auto disc = project_disc(camera, sphere);
-  if (!disc) return edges;
+/// Rays through sub-pixel edges along the outline of a sphere that shows as a disc of this radius; left out: beyond the
+/// border and where a robot hides the rim.
+RecycledVector<RobotPoint> outline_rays(const View& view, const Attempt& attempt, const RestingSphere& sphere,
+                                        double radius_px) {
+  RecycledVector<RobotPoint> rays;
   // Far enough for both plateaus, near enough to stay on the ball and beside it.
-  const double reach = std::clamp(0.35 * disc->radius_px, 2.0, 4.0);
-  const int count = static_cast<int>(std::clamp(2 * std::numbers::pi * disc->radius_px, 16.0, 64.0));
-  for (const OutlinePoint& p : outline(camera, sphere, count)) {
+  const double reach = std::clamp(0.35 * radius_px, 2.0, 4.0);
+  const int count = static_cast<int>(std::clamp(2 * std::numbers::pi * radius_px, 16.0, 64.0));
+  for (const OutlinePoint& p : outline(attempt.camera, sphere, count)) {
     bool usable = true;
     for (const double along : {-reach, 1.0, reach}) {
       const auto q = pixel_of(view, p.at + along * p.outward);
-      usable = usable && q && (with_hidden || along < 0 || !is_robot_color(view.color(q->column, q->row)));
+      usable = usable && q && (attempt.with_hidden || along < 0 || !view.is_robot(q->column, q->row));
     }
     if (!usable) continue;
-    if (const auto edge = find_edge(view.frame, {.at = p.at, .outward = p.outward, .reach_px = reach}))
-      edges.push_back(*edge);
+    const auto edge = find_edge(view.frame, {.at = p.at, .outward = p.outward, .reach_px = reach});
+    if (!edge) continue;
+    if (const auto ray = view.optics->rays.at(*edge)) rays.push_back(attempt.camera.robot_from_optical(*ray));
   }
-  return edges;
+  return rays;
 }
 
 /// What the image shows of a sphere's disc.
@@ -109,10 +144,25 @@ struct DiscView {
   int foot_floor = 0, foot_hidden = 0;  ///< Of these, on the floor; on a robot.
 };
 
-DiscView look_at_disc(const View& view, const MountedCamera& camera, const RestingSphere& sphere) {
+/// Pixels that two regions share. O(log runs of `large` + runs of both in the rows of `small`).
+int shared_pixels(const Region& small, const Region& large) {
+  if (small.empty()) return 0;
+  const auto runs = large.runs();
+  auto other = std::ranges::lower_bound(runs, small.runs().front().row, {}, &PixelRun::row);
+  int pixels = 0;
+  for (const PixelRun& run : small.runs()) {
+    while (other != runs.end() && (other->row < run.row || (other->row == run.row && other->end <= run.begin))) ++other;
+    // The last one may reach into the next run of `small`, too.
+    for (auto it = other; it != runs.end() && it->row == run.row && it->begin < run.end; ++it)
+      pixels += std::min(run.end, it->end) - std::max(run.begin, it->begin);
+  }
+  return pixels;
+}
+
+DiscView look_at_disc(const View& view, const RecycledVector<OutlinePoint>& rim) {
   DiscView look;
   RecycledVector<PixelPoint> polygon;
-  for (const OutlinePoint& p : outline(camera, sphere, 48)) {
+  for (const OutlinePoint& p : rim) {
     polygon.push_back(p.at);
     if (p.outward.y < 0.5) continue;  // the lower third of the rim
     for (const double along : {2.0, 3.0}) {
@@ -120,56 +170,47 @@ DiscView look_at_disc(const View& view, const MountedCamera& camera, const Resti
       if (!q) continue;
       ++look.foot;
       look.foot_floor += view.surface.is_floor(q->column, q->row);
-      look.foot_hidden += is_robot_color(view.color(q->column, q->row));
+      look.foot_hidden += view.is_robot(q->column, q->row);
     }
   }
   const int w = view.segmentation.width, h = view.segmentation.height;
-  const PixelBox window{-w, -h, 2 * w, 2 * h};
-  const Region disc = region_from_polygon(polygon, window);
-  for (const PixelRun& run : disc.runs())
-    for (int c = run.begin; c < run.end; ++c) {
-      if (!view.inside(c, run.row)) {
-        ++look.clipped;
-        continue;
-      }
-      ++look.disc;
-      look.own += view.color(c, run.row) == ball_color(view.field);
-      look.hidden += is_robot_color(view.color(c, run.row));
-    }
+  const Region whole = region_from_polygon(polygon, {-w, -h, 2 * w, 2 * h}), disc = clipped(whole, {0, 0, w, h});
+  look.disc = static_cast<int>(area(disc));
+  look.clipped = static_cast<int>(area(whole)) - look.disc;
+  look.own = shared_pixels(disc, view.segmentation.of(ball_color(view.field)));
+  for (const ColorClass color : kColorClasses)
+    if (view.is_robot(color)) look.hidden += shared_pixels(disc, view.segmentation.of(color));
   return look;
 }
 
-/// Distance from the eye's foot at which the lower (sign +1) tangent to a resting sphere goes down by `depression`. [m]
+/// Distance from the eye's foot at which the lower tangent to a resting sphere goes down by `depression`: the centre,
+/// d ahead and `down` below the eye, lies one radius above the line of sight, d sin - down cos = radius. [m]
 double tangent_distance(double eye_height, double radius, double depression) {
+  constexpr double furthest = 1e3;
   const double down = eye_height - radius;
-  const auto angle = [&](double d) {
-    return std::atan2(down, d) + std::asin(std::min(1.0, radius / std::hypot(d, down)));
-  };
   // With the eye below the ball's centre no tangent starts nearer than where the ball would touch the eye.
-  double near = std::max(1e-3, std::sqrt(std::max(0.0, radius * radius - down * down))), far = 1e3;
-  for (int i = 0; i < 60; ++i) {
-    const double middle = std::sqrt(near * far);
-    (angle(middle) > depression ? near : far) = middle;
-  }
-  return std::sqrt(near * far);
+  const double nearest = std::max(1e-3, std::sqrt(std::max(0.0, radius * radius - down * down)));
+  const double sine = std::sin(depression);
+  if (!(sine > 0)) return furthest;
+  return std::clamp((radius + down * std::cos(depression)) / sine, nearest, furthest);
 }
 
 /// DESIGN 6.5: the lowest pixel of the segment below the centre bounds the distance from above, the highest pixel of
 /// floor below it from below. Nothing where either is hidden or cut.
 std::optional<DistanceBounds> tangent_bounds(const View& view, const MountedCamera& camera, const SphereFit& fit) {
-  // Right, top, left, bottom: the bottom lies straight below the centre, where the tangent is.
-  const auto around = outline(camera, fit.sphere, 4);
-  if (around.size() != 4) return std::nullopt;
-  const OutlinePoint& lowest = around[3];
+  const auto bottom = lowest_of_outline(camera, fit.sphere);
+  if (!bottom) return std::nullopt;
+  const OutlinePoint& lowest = *bottom;
+  const ColorClass own_color = ball_color(view.field);
   std::optional<PixelPoint> last_own, first_floor;
   for (double along = -3; along <= 6; along += 0.25) {
     const PixelPoint p = lowest.at + along * lowest.outward;
     const auto pixel = pixel_of(view, p);
     if (!pixel) return std::nullopt;
     const ColorClass color = view.color(pixel->column, pixel->row);
-    if (color == ball_color(view.field)) {
+    if (color == own_color) {
       last_own = p;
-    } else if (is_robot_color(color)) {
+    } else if (view.is_robot(color)) {
       return std::nullopt;
     } else if (last_own && view.surface.is_floor(pixel->column, pixel->row)) {
       first_floor = p;
@@ -194,14 +235,6 @@ std::optional<DistanceBounds> tangent_bounds(const View& view, const MountedCame
   return DistanceBounds{std::min({a, b, c, d}), std::max({a, b, c, d})};
 }
 
-/// How a segment is looked at: with the mount as calibrated, or with the robot nodding; with or without the rim where a
-/// robot's colors begin.
-struct Attempt {
-  const MountedCamera& camera;
-  double nod_sigma = 0;  ///< Of the camera's pitch, beyond what the mount's calibration leaves. [rad]
-  bool with_hidden = false;
-};
-
 /// Could a segment in this box be a ball that rests on the floor? Rough, to save the fit for those that could.
 bool has_plausible_size(const View& view, const MountedCamera& camera, const PixelBox& box) {
   const auto guess = first_guess(view, camera, box);
@@ -215,18 +248,26 @@ std::optional<SphereFit> fit_segment(const View& view, const Attempt& attempt, c
                                      const PixelBox& box, const BallOptions& options) {
   const auto guess = first_guess(view, attempt.camera, box);
   if (!guess) return std::nullopt;
-  const auto coarse_edges = positions(rim, attempt.with_hidden);
-  if (coarse_edges.size() < 3) return std::nullopt;
-  SphereFitOptions fitting{.radius = view.field.ball.radius, .edge_sigma_px = 1.0, .iterations = 20};
-  auto fit = fit_resting_sphere(attempt.camera, coarse_edges, *guess, fitting);
+  const auto coarse_rays = rays_of(view, attempt, rim);
+  if (coarse_rays.size() < 3) return std::nullopt;
+  SphereFitOptions fitting{.radius = view.field.ball.radius,
+                           .edge_sigma_px = 1.0,
+                           .iterations = 20,
+                           .furthest = 2 * longest_distance(view.field)};
+  auto fit = fit_resting_sphere(attempt.camera, coarse_rays, *guess, fitting);
   if (!fit) return std::nullopt;
-  const auto disc = project_disc(attempt.camera, fit->sphere);
+  auto disc = project_disc(attempt.camera, fit->sphere);
   if (!disc || fit->rms_px > std::max(1.5, 0.25 * disc->radius_px)) return std::nullopt;
   fitting.edge_sigma_px = options.edge_sigma_px;
-  for (int round = 0; round < 2; ++round) {
-    const auto edges = outline_edges(view, attempt.camera, fit->sphere, attempt.with_hidden);
-    if (edges.size() < 6) break;
-    if (const auto finer = fit_resting_sphere(attempt.camera, edges, fit->sphere, fitting)) fit = finer;
+  for (int round = 0; round < 2 && disc; ++round) {
+    const auto rays = outline_rays(view, attempt, fit->sphere, disc->radius_px);
+    if (rays.size() < 6) break;
+    if (const auto finer = fit_resting_sphere(attempt.camera, rays, fit->sphere, fitting)) fit = finer;
+    // Edges were looked for around the outline of before: where that was near enough, looking again finds the same.
+    constexpr double near_px = 0.2;
+    const auto moved = project_disc(attempt.camera, fit->sphere);
+    if (moved && distance(moved->center, disc->center) + std::abs(moved->radius_px - disc->radius_px) < near_px) break;
+    disc = moved;
   }
   return fit;
 }
@@ -237,11 +278,13 @@ std::optional<Ball> try_ball(const View& view, const Attempt& attempt, const Reg
   const MountedCamera& camera = attempt.camera;
   const auto fit = fit_segment(view, attempt, rim, box, options);
   if (!fit) return std::nullopt;
-  const auto disc = project_disc(camera, fit->sphere);
+  constexpr int corners = 48;  // of the disc as a polygon
+  const auto around = outline(camera, fit->sphere, corners);
+  const auto disc = disc_of(camera, fit->sphere, around, corners);
   if (!disc) return std::nullopt;
   const double distance_m = norm(fit->sphere.foot);
   if (distance_m > longest_distance(view.field)) return std::nullopt;
-  const DiscView look = look_at_disc(view, camera, fit->sphere);
+  const DiscView look = look_at_disc(view, around);
   const int open_disc = look.disc - look.hidden;
   if (look.own < options.min_area_px || look.own < options.min_cover * open_disc) return std::nullopt;
   const int whole = look.disc + look.clipped;
@@ -292,7 +335,7 @@ std::optional<Ball> try_ball(const View& view, const Attempt& attempt, const Reg
 bool may_stand(const View& view, const PixelBox& box) {
   for (int r = box.y1; r < box.y1 + 4; ++r)
     for (int c = box.x0 + box.width() / 4; c <= box.x1 - 1 - box.width() / 4; ++c)
-      if (!view.inside(c, r) || view.surface.is_floor(c, r) || is_robot_color(view.color(c, r))) return true;
+      if (!view.inside(c, r) || view.surface.is_floor(c, r) || view.is_robot(c, r)) return true;
   return false;
 }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <span>
 
 namespace tassilo {
 namespace {
@@ -16,10 +17,9 @@ std::optional<PixelPoint> find_edge(const FrameView& frame, const EdgeSearch& se
   const int half = std::min(most / 2 - 1, static_cast<int>(std::lround(search.reach_px / step)));
   const int count = 2 * half + 1;
   std::array<YuvValue, most> values;
-  for (int i = 0; i < count; ++i) {
-    const PixelPoint p = search.at + (step * (i - half)) * search.outward;
-    values[static_cast<std::size_t>(i)] = sample(frame, p.x, p.y);
-  }
+  const PixelPoint first = search.at - (step * half) * search.outward;
+  sample_line(frame, {first.x, first.y, step * search.outward.x, step * search.outward.y},
+              std::span(values).first(static_cast<std::size_t>(count)));
   // Each side is the mean of its two outermost pixels' worth of samples.
   const auto value = [&](int i) { return values[static_cast<std::size_t>(i)]; };
   const YuvValue inner = mean(value(0), value(2)), outer = mean(value(count - 1), value(count - 3));

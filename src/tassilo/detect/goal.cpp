@@ -50,7 +50,7 @@ Below look_below(const View& view, int column, int row) {
   // Robots have gray parts above their colored ones: up to a twentieth of the image may lie between.
   for (int r = row + 1; r <= row + rim_px + view.segmentation.height / 20 && view.inside(column, r); ++r) {
     const ColorClass color = view.color(column, r);
-    if (is_robot_color(color) || to_string(color) == view.field.ball.color) return Below::hidden;
+    if (view.is_robot(color) || to_string(color) == view.field.ball.color) return Below::hidden;
     if (color != ColorClass::no_color) break;
   }
   return Below::other;
@@ -119,14 +119,14 @@ std::optional<End> end_of(const View& view, const Region& goal, int side, const 
     }
     bool robot = false;
     for (int k = 1; k <= 3 && view.inside(end.column + side * k, end.row); ++k)
-      robot = robot || is_robot_color(view.color(end.column + side * k, end.row));
+      robot = robot || view.is_robot(end.column + side * k, end.row);
     if (robot) {
       ++hidden;
       continue;
     }
     const PixelPoint rim{end.column + side * 0.5, static_cast<double>(end.row)};
     const auto edge = find_edge(view.frame, {.at = rim, .outward = {double(side), 0}, .reach_px = 3});
-    const auto ray = camera.ray(edge.value_or(rim));
+    const auto ray = view.optics->ray(edge.value_or(rim));
     if (!ray) continue;
     const double azimuth = std::atan2(ray->y, ray->x);
     // Near the first one, so that they can be ordered where azimuths jump from pi to -pi.
@@ -144,7 +144,7 @@ std::optional<End> end_of(const View& view, const Region& goal, int side, const 
   end.sigma = options.edge_sigma_px / camera.model().fx;
   // The foot of the end: the lowest row whose outermost pixel lies at this azimuth and stands on the floor.
   for (auto it = ends.rbegin(); it != ends.rend(); ++it) {
-    const auto ray = camera.ray({it->column + side * 0.5, static_cast<double>(it->row)});
+    const auto ray = view.optics->ray({it->column + side * 0.5, static_cast<double>(it->row)});
     if (!ray || std::abs(wrap_angle(std::atan2(ray->y, ray->x) - end.azimuth)) > 3.0 / camera.model().fx) continue;
     const int below = it->row + 2;
     const int inward = it->column - side;

@@ -2,11 +2,13 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <optional>
-#include <random>
 #include <string>
+#include <utility>
 
 #include "tassilo/base/error.h"
 #include "tassilo/base/sort_stably.h"
@@ -20,21 +22,7 @@ struct LinePoint {
   PixelPoint pixel;
   Eigen::Vector3d ray;  ///< Unit.
   FloorPoint floor;
-  Eigen::Matrix2d per_px;  ///< Floor shift of one pixel along columns and rows. [m/px]
 };
-
-std::optional<LinePoint> line_point(const View& view, PixelPoint pixel) {
-  const MountedCamera& camera = view.optics->camera;
-  const auto ray = camera.ray(pixel);
-  const auto floor = camera.floor_point(pixel, 0, longest_distance(view.field));
-  if (!ray || !floor) return std::nullopt;
-  const auto right = camera.floor_point(pixel + PixelPoint{1, 0}, 0, 1e4);
-  const auto below = camera.floor_point(pixel + PixelPoint{0, 1}, 0, 1e4);
-  if (!right || !below) return std::nullopt;
-  LinePoint point{pixel, {ray->x, ray->y, ray->z}, *floor, {}};
-  point.per_px << right->x - floor->x, below->x - floor->x, right->y - floor->y, below->y - floor->y;
-  return point;
-}
 
 constexpr int kMostPoints = 300;  // more do not make a line more certain, only slower
 
@@ -48,41 +36,72 @@ RecycledVector<PixelPoint> thinned(RecycledVector<PixelPoint> pixels) {
 }
 
 RecycledVector<LinePoint> on_floor(const View& view, const RecycledVector<PixelPoint>& pixels) {
+  const double furthest = longest_distance(view.field);
   RecycledVector<LinePoint> points;
-  for (const PixelPoint& pixel : thinned(pixels))
-    if (const auto point = line_point(view, pixel)) points.push_back(*point);
+  for (const PixelPoint& pixel : thinned(pixels)) {
+    const auto ray = view.optics->ray(pixel);
+    if (!ray) continue;
+    if (const auto floor = view.optics->camera.floor_along(*ray, 0, furthest))
+      points.push_back({pixel, {ray->x, ray->y, ray->z}, *floor});
+  }
   return points;
+}
+
+/// Takes away the marked ones.
+void drop(RecycledVector<LinePoint>& points, const RecycledVector<bool>& marked) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (!marked[i]) points[kept++] = points[i];
+  points.erase(points.begin() + static_cast<std::ptrdiff_t>(kept), points.end());
+}
+
+/// Numbers that look random and are the same for each frame, so that the same frame gives the same lines: a linear
+/// congruential generator, of which the upper half is used. Knuth, "The Art of Computer Programming" 2, 3.3.4.
+class Dice {
+ public:
+  explicit Dice(std::uint64_t seed) : state_(seed) {}
+  /// 0 .. below - 1
+  std::size_t operator()(std::size_t below) {
+    state_ = state_ * 6364136223846793005u + 1442695040888963407u;
+    return static_cast<std::size_t>(((state_ >> 32) * below) >> 32);
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+/// So many random pairs are enough to hold, all but certainly, one from a set that is this share of the points.
+int enough_trials(std::size_t inliers, std::size_t points, int most) {
+  constexpr double missed = 0.001;
+  const double share = static_cast<double>(inliers) / static_cast<double>(points);
+  const double needed = std::log(missed) / std::log1p(-std::min(0.999, share * share));
+  return needed < most ? static_cast<int>(needed) + 1 : most;
 }
 
 /// Middles of the line stretches along rows or along columns, whichever is narrower there.
 RecycledVector<PixelPoint> line_middles(const View& view) {
   const Surface& surface = view.surface;
   RecycledVector<PixelPoint> middles;
-  const auto is_line = [&](int c, int r) { return view.inside(c, r) && surface.at(c, r) == SurfaceKind::line; };
-  const auto rows_from = [&](int c, int r, int step) {
+  /// Line pixels beyond (c, r) along the column, up to `most`.
+  const auto rows_from = [&](int c, int r, int step, int most) {
     int n = 0;
-    while (is_line(c, r + (n + 1) * step)) ++n;
+    while (n < most && view.inside(c, r + (n + 1) * step) && surface.at(c, r + (n + 1) * step) == SurfaceKind::line)
+      ++n;
     return n;
   };
-  for (int r = 0; r < surface.height; ++r) {
-    const auto row = surface.row(r);
-    for (auto it = row.begin(); (it = std::find(it, row.end(), SurfaceKind::line)) != row.end();) {
-      const auto end = std::find_if(it, row.end(), [](SurfaceKind kind) { return kind != SurfaceKind::line; });
-      const int begin = static_cast<int>(it - row.begin()), length = static_cast<int>(end - it);
-      it = end;
-      const int middle = begin + length / 2;
-      if (length <= 1 + rows_from(middle, r, -1) + rows_from(middle, r, 1)) {
-        middles.push_back({begin + (length - 1) / 2.0, static_cast<double>(r)});
-        continue;
-      }
-      // Wider than high: the stretch along each column counts, once, where it begins.
-      for (int c = begin; c < begin + length; ++c) {
-        if (is_line(c, r - 1)) continue;
-        const int rows = 1 + rows_from(c, r, 1);
-        if (rows < length) middles.push_back({static_cast<double>(c), r + (rows - 1) / 2.0});
-      }
+  for_each_line_run(surface, [&](int r, int begin, int end) {
+    const int length = end - begin, middle = begin + length / 2;
+    if (length <= 1 + rows_from(middle, r, -1, length) + rows_from(middle, r, 1, length)) {
+      middles.push_back({begin + (length - 1) / 2.0, static_cast<double>(r)});
+      return;
     }
-  }
+    // Wider than high: the stretch along each column counts, once, where it begins.
+    for (int c = begin; c < end; ++c) {
+      if (rows_from(c, r, -1, 1) == 1) continue;
+      const int rows = 1 + rows_from(c, r, 1, length);
+      if (rows < length) middles.push_back({static_cast<double>(c), r + (rows - 1) / 2.0});
+    }
+  });
   return middles;
 }
 
@@ -95,17 +114,40 @@ RecycledVector<PixelPoint> wall_feet(const View& view) {
   const auto is_wall = [&](int c, int r) {
     return white ? view.surface.at(c, r) == SurfaceKind::wall : view.color(c, r) == *wall_color;
   };
-  for (int r = view.surface.height - 2; r >= 5; --r)
-    for (int c = 0; c < view.surface.width; ++c) {
-      if (view.surface.is_floor(c, r) || !view.surface.is_floor(c, r + 1)) continue;
-      // r is the first pixel above the carpet: a rim of two pixels, then wall.
-      int first = r;
-      while (first > r - 3 && !is_wall(c, first)) --first;
-      if (first > r - 3 && is_wall(c, first - 1) && is_wall(c, first - 2))
-        feet.push_back({static_cast<double>(c), (r + first) / 2.0 + 0.5});
-    }
+  for_each_floor_end(view.surface, [&](int c, int r) {
+    // r is the first pixel above the carpet: a rim of two pixels, then wall.
+    constexpr int rim = 2, wall = 3;
+    if (r < rim + wall) return;
+    int first = r;
+    while (first > r - 3 && !is_wall(c, first)) --first;
+    if (first > r - 3 && is_wall(c, first - 1) && is_wall(c, first - 2))
+      feet.push_back({static_cast<double>(c), (r + first) / 2.0 + 0.5});
+  });
   return feet;
 }
+
+/// The rays of points, one array a coordinate, so that the compiler compares several at once.
+class RayArrays {
+ public:
+  explicit RayArrays(const RecycledVector<LinePoint>& points) {
+    for (const auto& [axis, values] : {std::pair(0, &x_), std::pair(1, &y_), std::pair(2, &z_)}) {
+      values->reserve(points.size());
+      for (const LinePoint& p : points) values->push_back(static_cast<float>(p.ray[axis]));
+    }
+  }
+  /// Rays within `tolerance` of the plane with unit normal `normal`. [rad]
+  std::size_t count_in_plane(const Eigen::Vector3d& normal, double tolerance) const {
+    const auto a = static_cast<float>(normal.x()), b = static_cast<float>(normal.y()),
+               c = static_cast<float>(normal.z());
+    const auto most = static_cast<float>(tolerance);
+    std::int32_t count = 0;
+    for (std::size_t i = 0; i < x_.size(); ++i) count += std::abs(a * x_[i] + b * y_[i] + c * z_[i]) <= most;
+    return static_cast<std::size_t>(count);
+  }
+
+ private:
+  RecycledVector<float> x_, y_, z_;
+};
 
 /// Points whose rays lie in the plane through the eye with unit normal `normal`.
 RecycledVector<std::size_t> in_plane(const RecycledVector<LinePoint>& points, const Eigen::Vector3d& normal,
@@ -171,33 +213,40 @@ std::optional<FloorPoint> on_plane_and_floor(const View& view, const LinePoint& 
 
 void find_straight(const View& view, RecycledVector<LinePoint> points, LineKind kind, const LineOptions& options,
                    RecycledVector<LineSeen>& out) {
-  constexpr int trials = 60;
+  constexpr int most_trials = 60;
   const double tolerance =
       options.tolerance_px / std::sqrt(view.optics->camera.model().fx * view.optics->camera.model().fy);
-  std::mt19937 random(1);  // the same frame gives the same lines
+  Dice dice(1);
   RecycledVector<std::pair<double, LineSeen>> found;
   while (points.size() >= static_cast<std::size_t>(options.min_points) &&
          found.size() < static_cast<std::size_t>(options.max_lines)) {
-    std::uniform_int_distribution<std::size_t> any(0, points.size() - 1);
+    const RayArrays rays(points);
     Eigen::Vector3d best_normal = Eigen::Vector3d::Zero();
     std::size_t most = 0;
-    for (int trial = 0; trial < trials; ++trial) {
-      const std::size_t i = any(random), j = any(random);
+    for (int trial = 0, trials = most_trials; trial < trials; ++trial) {
+      const std::size_t i = dice(points.size()), j = dice(points.size());
       const Eigen::Vector3d normal = points[i].ray.cross(points[j].ray);
-      if (normal.norm() < 4 * tolerance) continue;  // too close together to say a direction
-      const Eigen::Vector3d unit = normal.normalized();
-      const auto count = static_cast<std::size_t>(
-          std::ranges::count_if(points, [&](const LinePoint& p) { return std::abs(unit.dot(p.ray)) <= tolerance; }));
+      const double length = normal.norm();
+      if (length < 4 * tolerance) continue;  // too close together to say a direction
+      const Eigen::Vector3d unit = normal / length;
+      const std::size_t count = rays.count_in_plane(unit, tolerance);
       if (count > most) {
         most = count;
         best_normal = unit;
+        trials = enough_trials(most, points.size(), most_trials);
       }
     }
     if (most < static_cast<std::size_t>(options.min_points)) break;
     auto chosen = in_plane(points, best_normal, tolerance);
     chosen = in_plane(points, plane_through(points, chosen), tolerance);
     const Piece piece = longest_piece(points, chosen, options);
-    if (piece.points.empty()) break;
+    RecycledVector<bool> used(points.size(), false);
+    if (piece.points.empty()) {
+      // Single points that happen to lie in one plane: without them the next best plane may be a line.
+      for (const std::size_t i : in_plane(points, best_normal, tolerance)) used[i] = true;
+      drop(points, used);
+      continue;
+    }
     const Eigen::Vector3d normal = plane_through(points, piece.points);
     const LinePoint &first = points[piece.points.front()], &last = points[piece.points.back()];
     const auto p = on_plane_and_floor(view, first, normal), q = on_plane_and_floor(view, last, normal);
@@ -210,7 +259,6 @@ void find_straight(const View& view, RecycledVector<LinePoint> points, LineKind 
       found.emplace_back(distance(*p, *q), std::move(line));
     }
     // What lies on the line, or on its rim, is explained.
-    RecycledVector<bool> used(points.size(), false);
     const auto [low_x, high_x] = std::ranges::minmax(first.floor.x, last.floor.x);
     const auto [low_y, high_y] = std::ranges::minmax(first.floor.y, last.floor.y);
     constexpr double rim = 0.05;  // [m]
@@ -219,47 +267,90 @@ void find_straight(const View& view, RecycledVector<LinePoint> points, LineKind 
       used[i] = x >= low_x - rim && x <= high_x + rim && y >= low_y - rim && y <= high_y + rim;
     }
     for (const std::size_t i : piece.points) used[i] = true;
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < points.size(); ++i)
-      if (!used[i]) points[kept++] = points[i];
-    points.resize(kept);
+    drop(points, used);
   }
   sort_stably(found, std::greater<>{}, &std::pair<double, LineSeen>::first);
   for (auto& [length, line] : found) out.push_back(std::move(line));
 }
 
-/// Distance of a point from the circle. [px]
-double from_circle(const LinePoint& point, FloorPoint center, double radius) {
-  const FloorPoint out = point.floor - center;
-  const double length = std::max(1e-6, norm(out));
-  const Eigen::RowVector2d normal(out.x / length, out.y / length);
-  return (length - radius) / std::max(1e-9, (normal * point.per_px).norm());
+/// How far the floor point moves from one pixel to the next, right and down, around a place in the image. [m/px]
+struct FloorShift {
+  FloorPoint right, below;
+};
+std::optional<FloorShift> floor_shift(const GroundMap& ground, PixelPoint at) {
+  if (ground.width() < 2 || ground.height() < 2) return std::nullopt;
+  const int c = std::clamp(static_cast<int>(at.x), 0, ground.width() - 2);
+  const int r = std::clamp(static_cast<int>(at.y), 0, ground.height() - 2);
+  const auto here = ground.at(c, r), right = ground.at(c + 1, r), below = ground.at(c, r + 1);
+  if (!here || !right || !below) return std::nullopt;
+  return FloorShift{*right - *here, *below - *here};
 }
 
-/// |from_circle| <= tolerance, without its divisions and roots.
-bool on_circle(const LinePoint& p, FloorPoint center, double radius, double tolerance) {
-  const double x = p.floor.x - center.x, y = p.floor.y - center.y, length = std::sqrt(x * x + y * y);
-  const double right = x * p.per_px(0, 0) + y * p.per_px(1, 0), below = x * p.per_px(0, 1) + y * p.per_px(1, 1);
-  const double off = (length - radius) * length;
-  return off * off <= tolerance * tolerance * (right * right + below * below);
-}
+/// Points for a circle, one array a coordinate, so that the compiler compares several at once.
+class CirclePoints {
+ public:
+  /// Those whose shift on the floor is known.
+  CirclePoints(const View& view, const RecycledVector<LinePoint>& points) : radius_(view.field.circle_radius) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const LinePoint& p = points[i];
+      const auto shift = floor_shift(view.optics->ground, p.pixel);
+      if (!shift) continue;
+      source_.push_back(i);
+      const double numbers[] = {p.floor.x, p.floor.y, shift->right.x, shift->right.y, shift->below.x, shift->below.y};
+      for (std::size_t k = 0; k < columns_.size(); ++k) columns_[k].push_back(static_cast<float>(numbers[k]));
+    }
+  }
+
+  std::size_t size() const { return source_.size(); }
+  std::size_t source(std::size_t i) const { return source_[i]; }  ///< Its place among the points given.
+  FloorPoint floor(std::size_t i) const { return {columns_[0][i], columns_[1][i]}; }
+
+  /// How many lie within `tolerance_px` of the circle around `center`.
+  std::size_t count(FloorPoint center, double tolerance_px) const {
+    const auto cx = static_cast<float>(center.x), cy = static_cast<float>(center.y);
+    const auto radius = static_cast<float>(radius_), tolerance = static_cast<float>(tolerance_px);
+    std::int32_t count = 0;
+    for (std::size_t i = 0; i < size(); ++i) {
+      const float x = columns_[0][i] - cx, y = columns_[1][i] - cy;
+      const float right = x * columns_[2][i] + y * columns_[3][i], below = x * columns_[4][i] + y * columns_[5][i];
+      const float square = x * x + y * y, off = square - radius * std::sqrt(square);
+      count += off * off <= tolerance * tolerance * (right * right + below * below);
+    }
+    return static_cast<std::size_t>(count);
+  }
+  /// Its distance from the circle [px] and how that changes with the centre, if no more than `tolerance_px`.
+  std::optional<Eigen::Vector3d> off_circle(std::size_t i, FloorPoint center, double tolerance_px) const {
+    const FloorPoint out = floor(i) - center;
+    const double square = dot(out, out), length = std::sqrt(square);
+    const double right = out.x * columns_[2][i] + out.y * columns_[3][i];
+    const double below = out.x * columns_[4][i] + out.y * columns_[5][i];
+    const double off = (length - radius_) * length, shift = right * right + below * below;
+    if (!(off * off <= tolerance_px * tolerance_px * shift) || !(shift > 0)) return std::nullopt;
+    const double per_meter = length / std::sqrt(shift);  // [px/m] along the radius
+    return Eigen::Vector3d((length - radius_) * per_meter, -out.x / length * per_meter, -out.y / length * per_meter);
+  }
+
+ private:
+  double radius_;
+  RecycledVector<std::size_t> source_;
+  std::array<RecycledVector<float>, 6> columns_;  ///< floor x, y; shift to the right x, y; below x, y
+};
 
 /// Enough of the circle must show, and most of what should show must: corners and straight lines touch a circle, too,
 /// but where it would go on there is carpet.
-bool is_supported(const View& view, const RecycledVector<LinePoint>& points, FloorPoint center,
-                  const LineOptions& options) {
+bool is_supported(const View& view, const CirclePoints& points, FloorPoint center, const LineOptions& options) {
   constexpr int bins = 36;
   const double radius = view.field.circle_radius;
   std::array<bool, bins> seen{};
-  for (const LinePoint& p : points)
-    if (on_circle(p, center, radius, options.tolerance_px)) {
-      const double turn = (bearing(p.floor - center) + std::numbers::pi) / (2 * std::numbers::pi);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (points.off_circle(i, center, options.tolerance_px)) {
+      const double turn = (bearing(points.floor(i) - center) + std::numbers::pi) / (2 * std::numbers::pi);
       seen[static_cast<std::size_t>(turn * bins) % bins] = true;
     }
   int supported = 0, missing = 0;
   for (int k = 0; k < bins; ++k) {
     const double angle = (k + 0.5) / bins * 2 * std::numbers::pi - std::numbers::pi;
-    const FloorPoint p = center + FloorPoint{radius * std::cos(angle), radius * std::sin(angle)};
+    const FloorPoint outward{std::cos(angle), std::sin(angle)}, p = center + radius * outward;
     const auto pixel = view.optics->camera.project({p.x, p.y, 0});
     if (!pixel) continue;
     const auto place = pixel_of(view, *pixel);
@@ -270,64 +361,60 @@ bool is_supported(const View& view, const RecycledVector<LinePoint>& points, Flo
     }
     // A robot, the ball or a wall excuses a missing piece, and so does a line too thin to be seen.
     constexpr double thinnest_px = 2;
-    const auto point = line_point(view, *pixel);
-    const Eigen::RowVector2d outward(std::cos(angle), std::sin(angle));
-    missing += view.surface.is_floor(place->column, place->row) && point &&
-               view.field.line_width > thinnest_px * (outward * point->per_px).norm();
+    const auto shift = floor_shift(view.optics->ground, *pixel);
+    missing += view.surface.is_floor(place->column, place->row) && shift &&
+               view.field.line_width > thinnest_px * std::hypot(dot(outward, shift->right), dot(outward, shift->below));
   }
   return supported * (2 * std::numbers::pi / bins) >= options.min_arc && missing <= supported / 2;
 }
 
 /// The centre circle of known radius; takes its points away.
-std::optional<CircleSeen> find_circle(const View& view, RecycledVector<LinePoint>& points, const LineOptions& options) {
+std::optional<CircleSeen> find_circle(const View& view, RecycledVector<LinePoint>& all, const LineOptions& options) {
   const double radius = view.field.circle_radius;
-  if (radius <= 0 || points.size() < static_cast<std::size_t>(2 * options.min_points)) return std::nullopt;
-  constexpr int trials = 100;
-  std::mt19937 random(2);
-  std::uniform_int_distribution<std::size_t> any(0, points.size() - 1);
-  const auto count = [&](FloorPoint center) {
-    return std::ranges::count_if(
-        points, [&](const LinePoint& p) { return on_circle(p, center, radius, options.tolerance_px); });
-  };
-  std::optional<FloorPoint> best;
-  std::ptrdiff_t most = 0;
-  for (int trial = 0; trial < trials; ++trial) {
-    const FloorPoint a = points[any(random)].floor, b = points[any(random)].floor;
+  const auto least = static_cast<std::size_t>(2 * options.min_points);
+  if (radius <= 0 || all.size() < least) return std::nullopt;
+  const CirclePoints points(view, all);
+  if (points.size() < least) return std::nullopt;
+  constexpr int most_trials = 100;
+  Dice dice(2);
+  FloorPoint center;
+  std::size_t most = 0;
+  for (int trial = 0, trials = most_trials; trial < trials; ++trial) {
+    const FloorPoint a = points.floor(dice(points.size())), b = points.floor(dice(points.size()));
     const double chord = distance(a, b);
     if (chord < 0.5 * radius || chord > 1.95 * radius) continue;
     const FloorPoint middle = 0.5 * (a + b);
     const double height = std::sqrt(radius * radius - chord * chord / 4);
     const FloorPoint across{-(b.y - a.y) / chord, (b.x - a.x) / chord};
     for (const double side : {height, -height}) {
-      const FloorPoint center = middle + side * across;
-      const auto inliers = count(center);
-      if (inliers > most) {
-        most = inliers;
-        best = center;
-      }
+      const FloorPoint here = middle + side * across;
+      const std::size_t inliers = points.count(here, options.tolerance_px);
+      if (inliers <= most) continue;
+      most = inliers;
+      center = here;
+      trials = enough_trials(most, points.size(), most_trials);
     }
   }
-  if (!best || most < 2 * options.min_points) return std::nullopt;
-  FloorPoint center = *best;
+  if (most < least) return std::nullopt;
   for (int iteration = 0; iteration < 5; ++iteration) {
     Eigen::Matrix2d information = 1e-9 * Eigen::Matrix2d::Identity();
     Eigen::Vector2d gradient = Eigen::Vector2d::Zero();
-    for (const LinePoint& p : points) {
-      const double e = from_circle(p, center, radius);
-      if (std::abs(e) > options.tolerance_px) continue;
-      const FloorPoint out = p.floor - center;
-      const double length = norm(out);
-      const Eigen::Vector2d normal(out.x / length, out.y / length);
-      const Eigen::Vector2d by_center = -normal / std::max(1e-9, (normal.transpose() * p.per_px).norm());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const auto off = points.off_circle(i, center, options.tolerance_px);
+      if (!off) continue;
+      const Eigen::Vector2d by_center = off->tail<2>();
       information += by_center * by_center.transpose();
-      gradient += e * by_center;
+      gradient += off->x() * by_center;
     }
     const Eigen::Vector2d step = -information.ldlt().solve(gradient);
     if (!step.allFinite()) return std::nullopt;
     center = center + FloorPoint{step[0], step[1]};
   }
   if (!is_supported(view, points, center, options)) return std::nullopt;
-  std::erase_if(points, [&](const LinePoint& p) { return on_circle(p, center, radius, 1.5 * options.tolerance_px); });
+  RecycledVector<bool> on_circle(all.size(), false);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (points.off_circle(i, center, 1.5 * options.tolerance_px)) on_circle[points.source(i)] = true;
+  drop(all, on_circle);
   return CircleSeen{center, radius};
 }
 

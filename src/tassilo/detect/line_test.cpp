@@ -58,6 +58,20 @@ TEST(FindLines, FindsTheCircleByItsRadius) {
   EXPECT_LT(distance(found.circles[0].center, center), 0.03);
 }
 
+// The plane with most points may be a row of dashes, of which none is a line; there are others.
+TEST(FindLines, ARowOfDashesDoesNotEndTheSearch) {
+  World world;
+  world.wall_x = 1000;
+  world.wall_height = 0;
+  for (double x = 1.1; x < 5; x += 0.7) world.lines.push_back({{x, 0}, {x + 0.2, 0}});
+  const test::Stripe line{{2.2, 0.5}, {2.2, 0.75}};
+  world.lines.push_back(line);
+  const Seen seen(test::cameras()[1], world);
+  const Lines found = find_lines(seen.view(), {.min_points = 24, .min_length = 0.2});
+  ASSERT_EQ(found.lines.size(), 1u);
+  EXPECT_LT(off_line(found.lines[0].floor->first, line), 0.03);
+}
+
 TEST(FindLines, CarpetAloneHasNone) {
   World world;
   world.wall_x = 1000;

@@ -4,13 +4,16 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "tassilo/base/error.h"
 #include "tassilo/base/median.h"
 #include "tassilo/base/sort_stably.h"
 #include "tassilo/detect/edge.h"
+#include "tassilo/detect/internal/column_runs.h"
 #include "tassilo/geometry/angle.h"
 
 namespace tassilo {
@@ -28,6 +31,7 @@ struct Stretch {
   int black = 0;
   double foot_row = 0;  ///< Sub-pixel lower rim. [px]
   std::optional<FloorPoint> foot_on_floor;
+  double range = 0;  ///< Of the foot on the floor; 0 where that is unknown. [m]
 
   /// Its marker color: the larger one, when there is enough of it.
   Team team() const {
@@ -35,7 +39,14 @@ struct Stretch {
     if (most < 2) return Team::unknown;
     return marker[0] >= marker[1] ? Team::cyan : Team::magenta;
   }
-  double range() const { return foot_on_floor ? norm(*foot_on_floor) : 0; }
+};
+
+/// What stays the same for all columns of a frame.
+struct Sight {
+  const View& view;
+  const RobotOptions& options;
+  std::optional<ColorClass> ball = color_class_from(view.field.ball.color);
+  double furthest = longest_distance(view.field);
 };
 
 /// How many rows a field line lying below a pixel may cover.
@@ -48,64 +59,101 @@ int line_rows(const View& view, int column, int row) {
   return static_cast<int>(slant * view.field.line_width / std::max(1e-4, distance(*here, *below)));
 }
 
-Under look_under(const View& view, int column, int foot, const RobotOptions& options) {
+Under look_under(const Sight& sight, int column, int foot) {
+  const View& view = sight.view;
   // A line that touches the robot has no carpet on this side, so the surface cannot know it from a wall.
-  const int reach = 1 + options.gap_px + line_rows(view, column, foot);
+  int reach = 1 + sight.options.gap_px;
+  bool further = true;
   for (int r = foot + 1; r <= foot + reach; ++r) {
     if (!view.inside(column, r)) return Under::border;
     if (view.surface.is_floor(column, r)) return Under::floor;
-    if (to_string(view.color(column, r)) == view.field.ball.color) return Under::ball;
+    if (view.color(column, r) == sight.ball) return Under::ball;
+    if (r == foot + reach && further) {
+      reach += line_rows(view, column, foot);
+      further = false;
+    }
   }
   return Under::other;
 }
 
-void place_foot(const View& view, Stretch& stretch) {
+void place_foot(const Sight& sight, Stretch& stretch) {
   stretch.foot_row = stretch.foot + 0.5;
   if (stretch.under == Under::floor) {
     const PixelPoint rim{static_cast<double>(stretch.column), stretch.foot_row};
-    if (const auto edge = find_edge(view.frame, {.at = rim, .outward = {0, 1}, .reach_px = 2.5}))
+    if (const auto edge = find_edge(sight.view.frame, {.at = rim, .outward = {0, 1}, .reach_px = 2.5}))
       stretch.foot_row = edge->y;
   }
-  if (view.optics != nullptr)
-    stretch.foot_on_floor = view.optics->camera.floor_point({static_cast<double>(stretch.column), stretch.foot_row}, 0,
-                                                            2 * longest_distance(view.field));
+  if (sight.view.optics == nullptr) return;
+  const Optics& optics = *sight.view.optics;
+  if (const auto ray = optics.ray({static_cast<double>(stretch.column), stretch.foot_row}))
+    stretch.foot_on_floor = optics.camera.floor_along(*ray, 0, 2 * sight.furthest);
+  if (stretch.foot_on_floor) stretch.range = norm(*stretch.foot_on_floor);
 }
 
-/// All stretches of one column that are high enough, from the bottom up.
-void stretches_of(const View& view, int column, const RobotOptions& options, RecycledVector<Stretch>& out) {
-  int r = view.segmentation.height - 1;
-  while (r >= 0) {
-    if (!is_robot_color(view.color(column, r))) {
-      --r;
-      continue;
-    }
+/// Do robots go on between two runs of a column? Carpet ends them, an unknown rim between two of their colors does not.
+bool is_rim(const Sight& sight, const ColumnRun& upper, const ColumnRun& lower) {
+  if (lower.top - upper.foot - 1 > sight.options.gap_px) return false;
+  for (int r = upper.foot + 1; r < lower.top; ++r)
+    if (sight.view.color(upper.column, r) != ColorClass::no_color) return false;
+  return true;
+}
+
+/// All stretches of one column that are high enough, from the bottom up. `runs` of the column, from the top down.
+void stretches_of(const Sight& sight, std::span<const ColumnRun> runs, RecycledVector<Stretch>& out) {
+  for (std::size_t next = runs.size(); next > 0;) {
     Stretch stretch;
-    stretch.column = column;
-    stretch.foot = r;
-    int gap = 0;
-    for (; r >= 0 && gap <= options.gap_px; --r) {
-      const ColorClass color = view.color(column, r);
-      if (!is_robot_color(color)) {
-        // Carpet ends a robot, an unknown rim between two of its colors does not.
-        if (color != ColorClass::no_color) break;
-        ++gap;
-        continue;
-      }
-      gap = 0;
-      stretch.top = r;
-      stretch.black += color == ColorClass::black;
-      stretch.marker[0] += color == ColorClass::cyan;
-      stretch.marker[1] += color == ColorClass::magenta;
-    }
-    if (stretch.foot - stretch.top + 1 < options.min_rows) continue;
-    stretch.under = look_under(view, column, stretch.foot, options);
+    stretch.column = runs[next - 1].column;
+    stretch.foot = runs[next - 1].foot;
+    do {
+      const ColumnRun& run = runs[--next];
+      const int pixels = run.foot - run.top + 1;
+      stretch.top = run.top;
+      if (run.color == ColorClass::cyan)
+        stretch.marker[0] += pixels;
+      else if (run.color == ColorClass::magenta)
+        stretch.marker[1] += pixels;
+      else
+        stretch.black += pixels;
+    } while (next > 0 && is_rim(sight, runs[next - 1], runs[next]));
+    if (stretch.foot - stretch.top + 1 < sight.options.min_rows) continue;
+    stretch.under = look_under(sight, stretch.column, stretch.foot);
     if (stretch.under == Under::other) continue;
-    place_foot(view, stretch);
-    if (view.optics != nullptr && stretch.under != Under::border &&
-        (!stretch.foot_on_floor || stretch.range() > longest_distance(view.field)))
+    place_foot(sight, stretch);
+    if (sight.view.optics != nullptr && stretch.under != Under::border &&
+        (!stretch.foot_on_floor || stretch.range > sight.furthest))
       continue;
     out.push_back(stretch);
   }
+}
+
+/// The robots' colors along all columns, from left to right and in each column from the top down.
+struct Columns {
+  RecycledVector<ColumnRun> runs;
+  RecycledVector<std::size_t> first;  ///< Of each column, and one more.
+
+  std::span<const ColumnRun> of(int column) const {
+    const auto c = static_cast<std::size_t>(column);
+    return std::span(runs).subspan(first[c], first[c + 1] - first[c]);
+  }
+};
+
+Columns columns_of(const View& view) {
+  RecycledVector<ColumnRun> found;
+  for (const ColorClass color : kColorClasses)
+    if (view.is_robot(color)) add_column_runs(view.segmentation.of(color), color, view.segmentation.width, found);
+  Columns columns;
+  columns.first.resize(static_cast<std::size_t>(view.segmentation.width) + 1);
+  for (const ColumnRun& run : found) ++columns.first[static_cast<std::size_t>(run.column) + 1];
+  std::partial_sum(columns.first.begin(), columns.first.end(), columns.first.begin());
+  columns.runs.resize(found.size());
+  RecycledVector<std::size_t> next(columns.first);
+  for (const ColumnRun& run : found) columns.runs[next[static_cast<std::size_t>(run.column)]++] = run;
+  for (int c = 0; c < view.segmentation.width; ++c) {
+    const auto from = columns.runs.begin() + static_cast<std::ptrdiff_t>(columns.first[static_cast<std::size_t>(c)]);
+    const auto to = columns.runs.begin() + static_cast<std::ptrdiff_t>(columns.first[static_cast<std::size_t>(c) + 1]);
+    std::ranges::sort(from, to, {}, &ColumnRun::foot);
+  }
+  return columns;
 }
 
 bool belong_together(const View& view, const Stretch& a, const Stretch& b, const RobotOptions& options) {
@@ -115,7 +163,7 @@ bool belong_together(const View& view, const Stretch& a, const Stretch& b, const
   if (a.under != Under::floor || b.under != Under::floor) return true;
   if (std::abs(a.foot_row - b.foot_row) <= 2.0) return true;
   if (view.optics == nullptr) return std::abs(a.foot_row - b.foot_row) <= 0.02 * view.segmentation.height + 2;
-  return std::abs(a.range() - b.range()) <= options.max_step;
+  return std::abs(a.range - b.range) <= options.max_step;
 }
 
 /// Outline point nearest to us, from feet smoothed over neighboring columns; nothing when no foot is seen.
@@ -133,10 +181,12 @@ std::optional<PixelPoint> nearest_foot(const View& view, const RecycledVector<St
     RecycledVector<double> rows;
     for (std::size_t k = from; k < to; ++k) rows.push_back(feet[k].y);
     const PixelPoint smooth{feet[i].x, median(std::move(rows))};
-    const auto point = view.optics->camera.floor_point(smooth);
-    if (point && (!best || norm(*point) < best_range)) {
+    const auto ray = view.optics->ray(smooth);
+    const auto point = ray ? view.optics->camera.floor_along(*ray) : std::nullopt;
+    const double range = point ? norm(*point) : 0;
+    if (point && (!best || range < best_range)) {
       best = smooth;
-      best_range = norm(*point);
+      best_range = range;
     }
   }
   return best;
@@ -263,9 +313,12 @@ RecycledVector<RobotSeen> find_robots(const View& view, const RobotOptions& opti
   RecycledVector<RecycledVector<Stretch>> chains;
   RecycledVector<std::size_t> open;  // chains that may still grow
   RecycledVector<Stretch> column;
+  const Sight sight{view, options};
+  const Columns columns = columns_of(view);
   for (int c = 0; c < view.segmentation.width; ++c) {
     column.clear();
-    stretches_of(view, c, options, column);
+    stretches_of(sight, columns.of(c), column);
+    if (column.empty()) continue;
     std::erase_if(open, [&](std::size_t k) { return chains[k].back().column < c - 1 - options.gap_px; });
     for (const Stretch& stretch : column) {
       // The chain whose foot is nearest, not yet continued in this column.

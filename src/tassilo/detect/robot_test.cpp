@@ -124,6 +124,15 @@ TEST(FindRobots, WithoutCalibrationItTellsBoxAndTeam) {
   EXPECT_FALSE(robots[0].floor.has_value());
 }
 
+TEST(RobotColors, AreThoseOfTheField) {
+  FieldModel::Robots robots;
+  EXPECT_EQ(robot_colors(robots),
+            class_bit(ColorClass::black) | class_bit(ColorClass::cyan) | class_bit(ColorClass::magenta));
+  robots.body = "red";
+  robots.markers = {"blue"};
+  EXPECT_EQ(robot_colors(robots), class_bit(ColorClass::red) | class_bit(ColorClass::blue));
+}
+
 TEST(RobotOptions, RefusesWhatIsOutOfRange) {
   RobotOptions options;
   options.max_step = 0;

@@ -12,6 +12,13 @@ constexpr double kLeastFlat = 1e-6;
 
 }  // namespace
 
+ClassBits robot_colors(const FieldModel::Robots& robots) {
+  ClassBits colors = class_bit(color_class_from(robots.body).value_or(ColorClass::no_color));
+  for (const std::string& marker : robots.markers)
+    colors |= class_bit(color_class_from(marker).value_or(ColorClass::no_color));
+  return colors;
+}
+
 std::optional<GridPoint> pixel_of(const View& view, PixelPoint place) {
   const double width = view.segmentation.width, height = view.segmentation.height;
   if (!(place.x > -0.5 && place.x < width - 0.5 && place.y > -0.5 && place.y < height - 0.5)) return std::nullopt;

@@ -4,6 +4,7 @@
 
 #include "tassilo/camera/ground_map.h"
 #include "tassilo/camera/mount.h"
+#include "tassilo/camera/ray_map.h"
 #include "tassilo/color/segment.h"
 #include "tassilo/field/field_model.h"
 #include "tassilo/image/frame.h"
@@ -14,12 +15,22 @@ namespace tassilo {
 /// A calibrated, mounted camera with what is computed from it once.
 struct Optics {
   Optics(const MountedCamera& mounted, const MountSigma& sigma)
-      : camera(mounted), ground(mounted), mount_sigma(sigma) {}
+      : camera(mounted), ground(mounted), rays(mounted.model()), mount_sigma(sigma) {}
+
+  /// Unit direction of a pixel's ray in the robot frame, as `camera.ray` but from the table.
+  std::optional<RobotPoint> ray(PixelPoint pixel) const {
+    const auto direction = rays.at(pixel);
+    return direction ? std::optional(camera.robot_from_optical(*direction)) : std::nullopt;
+  }
 
   MountedCamera camera;
   GroundMap ground;
+  RayMap rays;
   MountSigma mount_sigma;
 };
+
+/// Colors a robot of this field shows, its body's and its markers': what hides a ball or a goal, and is no floor.
+ClassBits robot_colors(const FieldModel::Robots& robots);
 
 /// All that a detector may look at in one frame; borrowed for one call.
 struct View {
@@ -28,18 +39,16 @@ struct View {
   const Surface& surface;
   const FieldModel& field;
   const Optics* optics = nullptr;  ///< Null without calibration.
+  ClassBits robots = robot_colors(field.robots);
 
   ColorClass color(int column, int row) const { return static_cast<ColorClass>(segmentation.label(column, row)); }
+  bool is_robot(ColorClass of) const { return (robots & class_bit(of)) != 0; }
+  bool is_robot(int column, int row) const { return is_robot(color(column, row)); }
   /// Is the pixel in the image?
   bool inside(int column, int row) const {
     return column >= 0 && row >= 0 && column < segmentation.width && row < segmentation.height;
   }
 };
-
-/// Colors a robot shows: what hides a ball or a goal, and is no floor.
-constexpr bool is_robot_color(ColorClass color) {
-  return color == ColorClass::black || color == ColorClass::cyan || color == ColorClass::magenta;
-}
 
 /// Pixel that holds a place; nothing outside the image, however far. O(1).
 struct GridPoint {

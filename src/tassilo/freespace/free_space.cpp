@@ -5,6 +5,7 @@
 #include <numbers>
 #include <string>
 
+#include "tassilo/base/contract.h"
 #include "tassilo/base/error.h"
 #include "tassilo/geometry/angle.h"
 
@@ -43,6 +44,19 @@ SectorMap::Ray follow(const MountedCamera& camera, FloorPoint origin, double ang
   return ray;
 }
 
+/// Tells which steps share a tile.
+void add_stretches(SectorMap::Ray& ray, int width) {
+  const auto across = static_cast<std::uint32_t>((width + Surface::kTile - 1) / Surface::kTile);
+  for (const SectorMap::Step& step : ray.steps) {
+    const auto tile = static_cast<std::uint32_t>(step.row / Surface::kTile) * across +
+                      static_cast<std::uint32_t>(step.column / Surface::kTile);
+    if (ray.stretches.empty() || ray.stretches.back().tile != tile)
+      ray.stretches.push_back({tile, ray.stretches.empty() ? 0 : ray.stretches.back().end, 0});
+    ++ray.stretches.back().end;
+    ray.stretches.back().range = step.range;
+  }
+}
+
 struct RayEnd {
   SectorState state = SectorState::unseen;
   double range = 0;
@@ -58,16 +72,27 @@ class Walker {
     double free_until = 0;     // floor nearer than the view counts as free once the first pixel is
     bool behind_ball = false;  // the ball hides the floor from here on
     int odd = 0;               // pixels that are neither floor nor ball since the last floor
-    for (const SectorMap::Step& step : ray.steps) {
-      if (surface_.is_floor(step.column, step.row)) {
-        free_until = step.range;
+    std::size_t next = 0;
+    for (const SectorMap::Stretch& stretch : ray.stretches) {
+      if ((surface_.tiles[stretch.tile] & Surface::all_floor) != 0) {
+        free_until = stretch.range;
         behind_ball = false;
         odd = 0;
-      } else if (on_ball(step.column, step.row)) {
-        behind_ball = true;
-      } else if (++odd > map_.options().noise_px) {
-        // Directly behind the ball: the floor up to the obstacle is hidden, not seen.
-        return {behind_ball ? SectorState::free : SectorState::blocked, free_until};
+        next = stretch.end;
+        continue;
+      }
+      for (; next < stretch.end; ++next) {
+        const SectorMap::Step& step = ray.steps[next];
+        if (surface_.is_floor(step.column, step.row)) {
+          free_until = step.range;
+          behind_ball = false;
+          odd = 0;
+        } else if (on_ball(step.column, step.row)) {
+          behind_ball = true;
+        } else if (++odd > map_.options().noise_px) {
+          // Directly behind the ball: the floor up to the obstacle is hidden, not seen.
+          return {behind_ball ? SectorState::free : SectorState::blocked, free_until};
+        }
       }
     }
     return {odd > 0 && !behind_ball ? SectorState::blocked : SectorState::free, free_until};
@@ -78,7 +103,8 @@ class Walker {
     return std::ranges::any_of(balls_, [&](const Ball& ball) {
       // The rim of mixed colors and the shadow at the foot belong to it.
       const double reach = ball.radius_px + 2;
-      return std::hypot(column - ball.center.x, row - ball.center.y) <= reach ||
+      const double right = column - ball.center.x, below = row - ball.center.y;
+      return right * right + below * below <= reach * reach ||
              (column >= ball.box.x0 && column < ball.box.x1 && row >= ball.box.y0 && row < ball.box.y1);
     });
   }
@@ -117,6 +143,7 @@ SectorMap::SectorMap(const MountedCamera& camera, const FreeSpaceOptions& option
     for (int i = 0; i < options_.rays; ++i) {
       const double offset = (i + 0.5) / options_.rays - 0.5;
       rays.push_back(follow(camera, origin_, (lowest + k + offset) * angle_increment_, options_.max_range));
+      add_stretches(rays.back(), camera.model().width);
       seen = seen || !rays.back().steps.empty();
     }
     if (!seen) continue;
@@ -130,7 +157,11 @@ SectorMap::SectorMap(const MountedCamera& camera, const FreeSpaceOptions& option
 }
 
 FreeSpace find_free_space(const SectorMap& map, const Surface& surface, std::span<const Ball> balls) {
+  expects(surface.tiles.size() == static_cast<std::size_t>(surface.tiles_across() * surface.tiles_down()),
+          "free space: the surface's tiles are up to date");
   FreeSpace space;
+  space.states.reserve(map.sectors());
+  space.ranges.reserve(map.sectors());
   space.origin = map.origin();
   space.angle_min = map.angle_min();
   space.angle_increment = map.angle_increment();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 
 #include "tassilo/base/recycled.h"
@@ -32,8 +33,15 @@ class SectorMap {
     std::int16_t column, row;
     float range;
   };
+  /// Steps that follow one another within one of the surface's tiles.
+  struct Stretch {
+    std::uint32_t tile;
+    std::uint32_t end;  ///< One behind its last step.
+    float range;        ///< Of its last step. [m]
+  };
   struct Ray {
-    RecycledVector<Step> steps;  ///< Empty where no floor of this direction is in view.
+    RecycledVector<Step> steps;         ///< Empty where no floor of this direction is in view.
+    RecycledVector<Stretch> stretches;  ///< All steps, in order.
   };
 
   const FreeSpaceOptions& options() const { return options_; }
@@ -61,7 +69,8 @@ class SectorMap {
 /// surface  of an image of the map's camera
 /// balls    accepted balls, by their box and disc in the image
 /// returns  one state and one range for each of the map's sectors
-/// cost     O(pixels on the lines of sight); safe from any thread. source: own, after the AGILO free motion space
+/// cost     O(pixels + tiles on the lines of sight + pixels of tiles that are not all floor); safe from any thread.
+/// source: own, after the AGILO free motion space
 FreeSpace find_free_space(const SectorMap& map, const Surface& surface, std::span<const Ball> balls);
 
 }  // namespace tassilo

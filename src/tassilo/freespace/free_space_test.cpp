@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+#include <span>
+#include <utility>
+
 #include "tassilo/base/error.h"
 #include "tassilo/camera/test_world.h"
 #include "tassilo/geometry/angle.h"
@@ -26,6 +30,7 @@ struct Known {
                            paint.u != test::kWhite.u;
         surface.kinds.push_back(floor ? SurfaceKind::carpet : SurfaceKind::object);
       }
+    surface.update_tiles();
   }
   Surface surface;
 };
@@ -41,6 +46,57 @@ double true_range(const World& world, FloorPoint origin, double angle) {
       range = std::min(range, along - std::sqrt(robot.radius * robot.radius - off));
   }
   return range;
+}
+
+/// One line of sight, step by step and without tiles: state and range.
+std::pair<SectorState, double> plain_walk(const SectorMap& map, const SectorMap::Ray& ray, const Surface& surface,
+                                          const Ball& ball) {
+  double free_until = 0;
+  bool behind_ball = false;
+  int odd = 0;
+  for (const SectorMap::Step& step : ray.steps) {
+    if (surface.is_floor(step.column, step.row)) {
+      free_until = step.range;
+      behind_ball = false;
+      odd = 0;
+    } else if (distance(ball.center, {double(step.column), double(step.row)}) <= ball.radius_px + 2) {
+      behind_ball = true;
+    } else if (++odd > map.options().noise_px) {
+      return {behind_ball ? SectorState::free : SectorState::blocked, free_until};
+    }
+  }
+  return {odd > 0 && !behind_ball ? SectorState::blocked : SectorState::free, free_until};
+}
+
+TEST(FindFreeSpace, OverTilesEqualsStepByStep) {
+  std::mt19937 random(1);
+  for (const MountedCamera& camera : test::cameras()) {
+    SCOPED_TRACE(camera.model().width);
+    const SectorMap map(camera, {.rays = 1});
+    Known known(camera, World{});
+    Ball ball;
+    ball.center = {camera.model().width / 2.0, camera.model().height * 0.7};
+    ball.radius_px = 9.3;
+    for (int round = 0; round < 20; ++round) {
+      Surface surface = known.surface;
+      for (int spot = 0; spot < 8 * round; ++spot) {
+        const int c = static_cast<int>(random() % static_cast<unsigned>(surface.width - 6));
+        const int r = static_cast<int>(random() % static_cast<unsigned>(surface.height - 6));
+        const int size = 1 + static_cast<int>(random() % 6);
+        for (int y = r; y < r + size; ++y)
+          for (int x = c; x < c + size; ++x)
+            surface.kinds[static_cast<std::size_t>(y * surface.width + x)] = SurfaceKind::wall;
+      }
+      surface.update_tiles();
+      const FreeSpace space = find_free_space(map, surface, std::span(&ball, 1));
+      for (std::size_t i = 0; i < map.sectors(); ++i) {
+        if (map.rays(i)[0].steps.empty()) continue;
+        const auto [state, range] = plain_walk(map, map.rays(i)[0], surface, ball);
+        EXPECT_EQ(space.states[i], state) << i;
+        EXPECT_EQ(space.ranges[i], range) << i;
+      }
+    }
+  }
 }
 
 TEST(FindFreeSpace, NeverClaimsMoreThanThereIsAndSeesWhatBlocks) {

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <random>
+
 namespace tassilo {
 namespace {
 
@@ -32,6 +35,37 @@ TEST(Sample, ReproducesPlanes) {
     EXPECT_NEAR(sample(view, -5, -5).y, 10, 1e-9);
     EXPECT_NEAR(sample(view, 100, 100).y, 10 + 5 * 15 + 3 * 11, 1e-9);
   }
+}
+
+// Inside, across the border and outside, in every direction and layout.
+TEST(SampleLine, EqualsSampleAtEachPlace) {
+  std::mt19937 random(1);
+  for (const PixelFormat format :
+       {PixelFormat::yuyv422, PixelFormat::uyvy422, PixelFormat::yuv422p, PixelFormat::yuv420p, PixelFormat::nv12})
+    for (const int width : {1, 16, 17}) {
+      SCOPED_TRACE(testing::Message() << to_string(format) << ", " << width);
+      const int height = 12;
+      const FrameBuffer buffer = make_frame_buffer(format, width, height, ColorRange::full);
+      const FrameView& view = buffer.frame.view;
+      for (int r = 0; r < height; ++r) {
+        const YuvRow row = view.row(r);
+        for (int c = 0; c < width; ++c)
+          for (const std::uint8_t* byte :
+               {row.y + c * row.y_step, row.u + c / 2 * row.chroma_step, row.v + c / 2 * row.chroma_step})
+            const_cast<std::uint8_t&>(*byte) = static_cast<std::uint8_t>(random());
+      }
+      std::uniform_real_distribution<double> column(-4, width + 4), row(-4, height + 4), step(-1, 1);
+      for (int i = 0; i < 300; ++i) {
+        const SampleLine line{column(random), row(random), step(random), step(random)};
+        std::array<YuvValue, 9> values;
+        sample_line(view, line, values);
+        for (int k = 0; k < 9; ++k) {
+          const YuvValue plain = sample(view, line.column + k * line.column_step, line.row + k * line.row_step);
+          const YuvValue& fast = values[static_cast<std::size_t>(k)];
+          EXPECT_TRUE(fast.y == plain.y && fast.u == plain.u && fast.v == plain.v) << i << ", " << k;
+        }
+      }
+    }
 }
 
 TEST(Sample, OnePixelIsEverywhere) {

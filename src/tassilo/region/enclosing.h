@@ -5,9 +5,9 @@
 
 namespace tassilo {
 
-// Shapes around a region. As in features.h, pixels count as points at their centres: a single pixel is
-// enclosed by a circle of radius 0, a box of w x h pixels by a rectangle of (w - 1) x (h - 1). The empty region has all
-// 0. All are pure and safe from any thread.
+// Shapes around a region. As in features.h, pixels count as points at their centres: a single pixel is enclosed by a
+// circle of radius 0, a box of w x h pixels by a rectangle of (w - 1) x (h - 1). The empty region has all 0. All are
+// pure and safe from any thread.
 
 /// A rectangle at any angle.
 struct RotatedRectangle {

@@ -3,129 +3,106 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <functional>
-#include <optional>
 
 #include "tassilo/base/contract.h"
-#include "tassilo/region/enclosing.h"
-#include "tassilo/region/features.h"
-#include "tassilo/region/feret.h"
 #include "tassilo/region/fill.h"
 #include "tassilo/region/inscribed.h"
 
 namespace tassilo {
 namespace {
 
-/// A region, and what was measured of it so far.
-class Measured {
- public:
-  explicit Measured(const Region& region) : region_(region) {}
-
-  const Region& region() const { return region_; }
-  const ShapeFeatures& shape() {
-    return once(shape_, [&] { return shape_features(region_); });
-  }
-  const RotatedRectangle& rectangle() {
-    return once(rectangle_, [&] { return smallest_rectangle(region_); });
-  }
-  const PixelBox& inner_box() {
-    return once(inner_box_, [&] { return inner_rectangle(region_); });
-  }
-  const FeretDiameters& feret() {
-    return once(feret_, [&] { return feret_diameters(region_); });
-  }
-
- private:
-  template <class T, class Measure>
-  static const T& once(std::optional<T>& known, Measure measure) {
-    if (!known) known = measure();
-    return *known;
-  }
-
-  const Region& region_;
-  std::optional<ShapeFeatures> shape_;
-  std::optional<RotatedRectangle> rectangle_;
-  std::optional<PixelBox> inner_box_;
-  std::optional<FeretDiameters> feret_;
-};
+template <class T, class Measure>
+const T& once(std::optional<T>& known, Measure measure) {
+  if (!known) known = measure();
+  return *known;
+}
 
 struct Row {
   FeatureInfo info;
-  double (*measure)(Measured&);
+  double (*measure)(FeatureMeter&);
 };
 
 template <double (*of)(const Region&)>
-double plain(Measured& m) {
+double plain(FeatureMeter& m) {
   return of(m.region());
 }
 
 constexpr std::array kTable{
     Row{{Feature::area, "area", "px^2", "number of pixels"},
-        [](Measured& m) { return static_cast<double>(m.shape().area); }},
-    Row{{Feature::row, "row", "px", "row of the centre of gravity"}, [](Measured& m) { return m.shape().center.y; }},
+        [](FeatureMeter& m) { return static_cast<double>(m.shape().area); }},
+    Row{{Feature::row, "row", "px", "row of the centre of gravity"},
+        [](FeatureMeter& m) { return m.shape().center.y; }},
     Row{{Feature::column, "column", "px", "column of the centre of gravity"},
-        [](Measured& m) { return m.shape().center.x; }},
-    Row{{Feature::row1, "row1", "px", "first row"}, [](Measured& m) { return double(m.shape().box.y0); }},
-    Row{{Feature::column1, "column1", "px", "first column"}, [](Measured& m) { return double(m.shape().box.x0); }},
+        [](FeatureMeter& m) { return m.shape().center.x; }},
+    Row{{Feature::row1, "row1", "px", "first row"}, [](FeatureMeter& m) { return double(m.shape().box.y0); }},
+    Row{{Feature::column1, "column1", "px", "first column"}, [](FeatureMeter& m) { return double(m.shape().box.x0); }},
     Row{{Feature::row2, "row2", "px", "last row, inclusive"},
-        [](Measured& m) { return m.region().empty() ? 0. : m.shape().box.y1 - 1.; }},
+        [](FeatureMeter& m) { return m.region().empty() ? 0. : m.shape().box.y1 - 1.; }},
     Row{{Feature::column2, "column2", "px", "last column, inclusive"},
-        [](Measured& m) { return m.region().empty() ? 0. : m.shape().box.x1 - 1.; }},
+        [](FeatureMeter& m) { return m.region().empty() ? 0. : m.shape().box.x1 - 1.; }},
     Row{{Feature::width, "width", "px", "width of the smallest axis-parallel box"},
-        [](Measured& m) { return double(m.shape().box.width()); }},
+        [](FeatureMeter& m) { return double(m.shape().box.width()); }},
     Row{{Feature::height, "height", "px", "height of the smallest axis-parallel box"},
-        [](Measured& m) { return double(m.shape().box.height()); }},
+        [](FeatureMeter& m) { return double(m.shape().box.height()); }},
     Row{{Feature::ra, "ra", "px", "longer half axis of the ellipse with the same moments"},
-        [](Measured& m) { return m.shape().ellipse.ra; }},
+        [](FeatureMeter& m) { return m.shape().ellipse.ra; }},
     Row{{Feature::rb, "rb", "px", "shorter half axis of that ellipse"},
-        [](Measured& m) { return m.shape().ellipse.rb; }},
+        [](FeatureMeter& m) { return m.shape().ellipse.rb; }},
     Row{{Feature::phi, "phi", "rad", "direction of the longer half axis, (-pi/2, pi/2]"},
-        [](Measured& m) { return m.shape().ellipse.phi; }},
+        [](FeatureMeter& m) { return m.shape().ellipse.phi; }},
     Row{{Feature::orientation, "orientation", "rad", "the same towards the pixel farthest from the centre, (-pi, pi]"},
         plain<orientation>},
-    Row{{Feature::anisometry, "anisometry", "", "ra / rb"}, [](Measured& m) { return m.shape().anisometry; }},
-    Row{{Feature::bulkiness, "bulkiness", "", "pi ra rb / area"}, [](Measured& m) { return m.shape().bulkiness; }},
+    Row{{Feature::anisometry, "anisometry", "", "ra / rb"}, [](FeatureMeter& m) { return m.shape().anisometry; }},
+    Row{{Feature::bulkiness, "bulkiness", "", "pi ra rb / area"}, [](FeatureMeter& m) { return m.shape().bulkiness; }},
     Row{{Feature::structure_factor, "struct_factor", "", "anisometry * bulkiness - 1"},
-        [](Measured& m) { return m.shape().structure_factor; }},
+        [](FeatureMeter& m) { return m.shape().structure_factor; }},
     Row{{Feature::circularity, "circularity", "", "area over that of the circle around the centre, at most 1"},
-        [](Measured& m) { return m.shape().circularity; }},
+        [](FeatureMeter& m) { return m.shape().circularity; }},
     Row{{Feature::compactness, "compactness", "", "contour length^2 / (4 pi area), at least 1"}, plain<compactness>},
     Row{{Feature::convexity, "convexity", "", "area over that of the convex hull"}, plain<convexity>},
     Row{{Feature::rectangularity, "rectangularity", "", "agreement with the rectangle of the same moments"},
         plain<rectangularity>},
+    Row{{Feature::roundness, "roundness", "", "1 - dist_deviation / dist_mean"},
+        [](FeatureMeter& m) { return m.round().roundness; }},
+    Row{{Feature::dist_mean, "dist_mean", "px", "mean distance of the boundary from the centre"},
+        [](FeatureMeter& m) { return m.round().distance; }},
+    Row{{Feature::dist_deviation, "dist_deviation", "px", "deviation of that distance"},
+        [](FeatureMeter& m) { return m.round().deviation; }},
+    Row{{Feature::num_sides, "num_sides", "", "number of sides if it is a regular polygon"},
+        [](FeatureMeter& m) { return m.round().sides; }},
     Row{{Feature::contour_length, "contlength", "px", "length of the outer contours"}, plain<contour_length>},
     Row{{Feature::connect_num, "connect_num", "", "number of 8-connected components"},
-        [](Measured& m) { return double(label_runs(m.region()).count); }},
+        [](FeatureMeter& m) { return double(label_runs(m.region()).count); }},
     Row{{Feature::holes_num, "holes_num", "", "number of holes"},
-        [](Measured& m) { return static_cast<double>(hole_count(m.region())); }},
+        [](FeatureMeter& m) { return static_cast<double>(hole_count(m.region())); }},
     Row{{Feature::area_holes, "area_holes", "px^2", "number of pixels in holes"},
-        [](Measured& m) { return static_cast<double>(area(holes(m.region()))); }},
+        [](FeatureMeter& m) { return static_cast<double>(area(holes(m.region()))); }},
     Row{{Feature::euler_number, "euler_number", "", "components less holes"},
-        [](Measured& m) { return static_cast<double>(euler_number(m.region())); }},
+        [](FeatureMeter& m) { return static_cast<double>(euler_number(m.region())); }},
     Row{{Feature::max_diameter, "max_diameter", "px", "largest distance of two pixels"},
-        [](Measured& m) { return m.feret().max.length; }},
+        [](FeatureMeter& m) { return m.feret().max.length; }},
     Row{{Feature::min_feret, "min_feret", "px", "least width between two parallel lines"},
-        [](Measured& m) { return m.feret().min.length; }},
+        [](FeatureMeter& m) { return m.feret().min.length; }},
     Row{{Feature::outer_radius, "outer_radius", "px", "radius of the smallest circle around"},
-        [](Measured& m) { return smallest_circle(m.region()).radius; }},
+        [](FeatureMeter& m) { return smallest_circle(m.region()).radius; }},
     Row{{Feature::inner_radius, "inner_radius", "px", "radius of the largest circle inside"},
-        [](Measured& m) { return inner_circle(m.region()).radius; }},
+        [](FeatureMeter& m) { return inner_circle(m.region()).radius; }},
     Row{{Feature::inner_width, "inner_width", "px", "width of the largest axis-parallel box inside"},
-        [](Measured& m) { return double(m.inner_box().width()); }},
+        [](FeatureMeter& m) { return double(m.inner_box().width()); }},
     Row{{Feature::inner_height, "inner_height", "px", "height of that box"},
-        [](Measured& m) { return double(m.inner_box().height()); }},
+        [](FeatureMeter& m) { return double(m.inner_box().height()); }},
     Row{{Feature::rect2_len1, "rect2_len1", "px", "half length of the smallest rectangle at any angle"},
-        [](Measured& m) { return m.rectangle().half_length; }},
+        [](FeatureMeter& m) { return m.rectangle().half_length; }},
     Row{{Feature::rect2_len2, "rect2_len2", "px", "half width of that rectangle"},
-        [](Measured& m) { return m.rectangle().half_width; }},
+        [](FeatureMeter& m) { return m.rectangle().half_width; }},
     Row{{Feature::rect2_phi, "rect2_phi", "rad", "direction of its length, (-pi/2, pi/2]"},
-        [](Measured& m) { return m.rectangle().phi; }},
+        [](FeatureMeter& m) { return m.rectangle().phi; }},
     Row{{Feature::moments_m20, "moments_m20", "px^4", "sum of squared row distances from the centre"},
-        [](Measured& m) { return m.shape().moments.rr * static_cast<double>(m.shape().area); }},
+        [](FeatureMeter& m) { return m.shape().moments.rr * static_cast<double>(m.shape().area); }},
     Row{{Feature::moments_m11, "moments_m11", "px^4", "sum of products of row and column distances"},
-        [](Measured& m) { return m.shape().moments.rc * static_cast<double>(m.shape().area); }},
+        [](FeatureMeter& m) { return m.shape().moments.rc * static_cast<double>(m.shape().area); }},
     Row{{Feature::moments_m02, "moments_m02", "px^4", "sum of squared column distances from the centre"},
-        [](Measured& m) { return m.shape().moments.cc * static_cast<double>(m.shape().area); }},
+        [](FeatureMeter& m) { return m.shape().moments.cc * static_cast<double>(m.shape().area); }},
 };
 
 constexpr bool in_order() {
@@ -159,16 +136,32 @@ std::optional<Feature> feature_named(std::string_view name) {
 
 std::string_view to_string(Feature feature) { return row_of(feature).info.name; }
 
-double feature_value(const Region& region, Feature feature) {
-  Measured measured(region);
-  return row_of(feature).measure(measured);
+const ShapeFeatures& FeatureMeter::shape() {
+  return once(shape_, [&] { return shape_features(region_); });
+}
+const RotatedRectangle& FeatureMeter::rectangle() {
+  return once(rectangle_, [&] { return smallest_rectangle(region_); });
+}
+const FeretDiameters& FeatureMeter::feret() {
+  return once(feret_, [&] { return feret_diameters(region_); });
+}
+const PixelBox& FeatureMeter::inner_box() {
+  return once(inner_box_, [&] { return inner_rectangle(region_); });
 }
 
+const Roundness& FeatureMeter::round() {
+  return once(round_, [&] { return roundness(region_); });
+}
+
+double FeatureMeter::operator()(Feature feature) { return row_of(feature).measure(*this); }
+
+double feature_value(const Region& region, Feature feature) { return FeatureMeter(region)(feature); }
+
 RecycledVector<double> feature_values(const Region& region, std::span<const Feature> features) {
-  Measured measured(region);
+  FeatureMeter meter(region);
   RecycledVector<double> values;
   values.reserve(features.size());
-  for (const Feature feature : features) values.push_back(row_of(feature).measure(measured));
+  for (const Feature feature : features) values.push_back(meter(feature));
   return values;
 }
 

@@ -6,7 +6,11 @@
 #include <string_view>
 
 #include "tassilo/base/recycled.h"
+#include "tassilo/region/enclosing.h"
+#include "tassilo/region/features.h"
+#include "tassilo/region/feret.h"
 #include "tassilo/region/region.h"
+#include "tassilo/region/roundness.h"
 
 namespace tassilo {
 
@@ -33,6 +37,10 @@ enum class Feature : std::uint8_t {
   compactness,
   convexity,
   rectangularity,
+  roundness,
+  dist_mean,
+  dist_deviation,
+  num_sides,
   contour_length,
   connect_num,
   holes_num,
@@ -65,10 +73,35 @@ std::span<const FeatureInfo> all_features();
 std::optional<Feature> feature_named(std::string_view name);
 std::string_view to_string(Feature feature);
 
+/// Measures features of one region, each when it is asked for; what several have in common is computed once. Borrows
+/// the region; for one thread.
+class FeatureMeter {
+ public:
+  explicit FeatureMeter(const Region& region) : region_(region) {}
+  explicit FeatureMeter(Region&&) = delete;  ///< Would outlive the region.
+
+  double operator()(Feature feature);
+
+  const Region& region() const { return region_; }
+  const ShapeFeatures& shape();
+  const RotatedRectangle& rectangle();
+  const FeretDiameters& feret();
+  const PixelBox& inner_box();
+  const Roundness& round();
+
+ private:
+  const Region& region_;
+  std::optional<ShapeFeatures> shape_;
+  std::optional<RotatedRectangle> rectangle_;
+  std::optional<FeretDiameters> feret_;
+  std::optional<PixelBox> inner_box_;
+  std::optional<Roundness> round_;
+};
+
 /// One number of one region; 0 for the empty region. Costs what the feature costs: most O(R), the inner ones O(pixels
 /// of the bounding box). HALCON `region_features`. Pure, safe from any thread.
 double feature_value(const Region& region, Feature feature);
-/// Several, in the order asked for; what they have in common is computed once.
+/// Several, in the order asked for.
 RecycledVector<double> feature_values(const Region& region, std::span<const Feature> features);
 
 }  // namespace tassilo

@@ -49,6 +49,7 @@ TEST(FeatureTable, GivesWhatTheFunctionsGive) {
     EXPECT_EQ(value("anisometry"), shape.anisometry);
     EXPECT_EQ(value("struct_factor"), shape.structure_factor);
     EXPECT_EQ(value("orientation"), orientation(region));
+    EXPECT_EQ(value("num_sides"), roundness(region).sides);
     EXPECT_EQ(value("contlength"), contour_length(region));
     EXPECT_EQ(value("euler_number"), value("connect_num") - value("holes_num"));
     EXPECT_EQ(value("area_holes"), static_cast<double>(area(fill_holes(region)) - area(region)));

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <optional>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -9,6 +11,7 @@
 
 #include "tassilo/base/contract.h"
 #include "tassilo/region/algebra.h"
+#include "tassilo/region/internal/bit_plane.h"
 #include "tassilo/region/internal/coordinate.h"
 #include "tassilo/region/internal/run_builder.h"
 
@@ -90,6 +93,45 @@ Region over_element(const Region& region, const Region& element) {
   return result;
 }
 
+/// The same operators on bit planes, for regions with so many runs that words of pixels are faster.
+class Planes {
+ public:
+  /// Nothing where runs are faster, or where the element says so by being empty. `growths`: how often the operator
+  /// dilates before it erodes, and once more.
+  static std::optional<Planes> if_faster(const Region& region, const Region& element, int growths) {
+    expects(!element.empty(), "a structuring element has pixels");
+    const PixelBox box = bounding_box(region), element_box = bounding_box(element);
+    const PlaneFrame frame = plane_frame(box, growths * element_box.width(), growths * element_box.height());
+    // A step over a plane costs about a fifth of a nanosecond a word, one over runs some three a run. Own, measured.
+    constexpr std::size_t words_per_run = 12;
+    if (region.empty() || frame.words() + frame.guard > words_per_run * region.runs().size()) return std::nullopt;
+    RecycledVector<PixelBox> boxes = maximal_boxes(element);
+    for (PixelBox& part : boxes)
+      part = {part.x0 - element_box.x0, part.y0 - element_box.y0, part.x1 - element_box.x0, part.y1 - element_box.y0};
+    return Planes(region, frame, element_box, std::move(boxes));
+  }
+
+  // The element is moved to pixel (0, 0); the result makes up for it.
+  Region dilation() const { return region(dilated(plane(), frame_, boxes_), {element_.x0, element_.y0}); }
+  Region erosion() const { return region(eroded(plane(), frame_, boxes_), {-element_.x0, -element_.y0}); }
+  Region opening() const { return region(dilated(eroded(plane(), frame_, boxes_), frame_, boxes_), {}); }
+  Region closing() const { return region(eroded(dilated(plane(), frame_, boxes_), frame_, boxes_), {}); }
+
+ private:
+  Planes(const Region& region, const PlaneFrame& frame, const PixelBox& element, RecycledVector<PixelBox> boxes)
+      : region_(region), frame_(frame), element_(element), boxes_(std::move(boxes)) {}
+
+  BitPlane plane() const { return plane_of(region_, frame_); }
+  Region region(const BitPlane& plane, PixelShift shift) const {
+    return region_of(plane, frame_, shift, region_.runs().size());
+  }
+
+  const Region& region_;
+  PlaneFrame frame_;
+  PixelBox element_;
+  RecycledVector<PixelBox> boxes_;
+};
+
 }  // namespace
 
 Region rectangle(int width, int height) {
@@ -109,12 +151,24 @@ Region disc(double radius) {
   return Region::from_sorted(std::move(runs));
 }
 
-Region dilation(const Region& region, const Region& element) { return over_element<Dilate>(region, element); }
+Region dilation(const Region& region, const Region& element) {
+  if (const auto planes = Planes::if_faster(region, element, 1)) return planes->dilation();
+  return over_element<Dilate>(region, element);
+}
 
-Region erosion(const Region& region, const Region& element) { return over_element<Erode>(region, element); }
+Region erosion(const Region& region, const Region& element) {
+  if (const auto planes = Planes::if_faster(region, element, 1)) return planes->erosion();
+  return over_element<Erode>(region, element);
+}
 
-Region opening(const Region& region, const Region& element) { return dilation(erosion(region, element), element); }
+Region opening(const Region& region, const Region& element) {
+  if (const auto planes = Planes::if_faster(region, element, 1)) return planes->opening();
+  return dilation(erosion(region, element), element);
+}
 
-Region closing(const Region& region, const Region& element) { return erosion(dilation(region, element), element); }
+Region closing(const Region& region, const Region& element) {
+  if (const auto planes = Planes::if_faster(region, element, 2)) return planes->closing();
+  return erosion(dilation(region, element), element);
+}
 
 }  // namespace tassilo

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
 #include <vector>
 
+#include "tassilo/base/kernel.h"
 #include "tassilo/region/algebra.h"
 #include "tassilo/region/internal/test_regions.h"
 
@@ -122,6 +124,44 @@ TEST(Morphology, OfNothingIsNothingAndByNothingIsBroken) {
   EXPECT_TRUE(closing(Region{}, rectangle(3, 3)).empty());
   EXPECT_DEATH(dilation(rectangle(3, 3), Region{}), "structuring element");
   EXPECT_DEATH(erosion(rectangle(3, 3), Region{}), "structuring element");
+}
+
+// A pixel far away makes the box around the region so large that runs are worth it, where planes were before.
+TEST(Morphology, IsTheSameOnRunsAndOnBitPlanesForEveryKernel) {
+  const Kernel before = kernel_in_use();
+  const Region far_away = Region::from_box({20000, 9000, 20001, 9001});
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE(seed);
+    const int width = 1 + static_cast<int>(seed * 29 % 270), x = static_cast<int>(seed % 5) * 300 - 700;
+    const PixelBox box{x, -20, x + width, -20 + 1 + static_cast<int>(seed % 37)};
+    const double densities[] = {.5, .8, .95, .99};
+    const Region region = random_region(seed, {box, densities[seed % 4], 0});
+    for (const Region& element : elements()) {
+      const Region both = union_of(region, far_away);
+      const PixelBox near{-32000, -1000, 10000, 1000};
+      const Region dilated = clipped(dilation(both, element), near), eroded = clipped(erosion(both, element), near);
+      const Region opened = clipped(opening(both, element), near), closed = clipped(closing(both, element), near);
+      for (const Kernel kernel : supported_kernels()) {
+        SCOPED_TRACE(std::string(to_string(kernel)));
+        use_kernel(kernel);
+        ASSERT_EQ(dilation(region, element), dilated);
+        ASSERT_EQ(erosion(region, element), eroded);
+        ASSERT_EQ(opening(region, element), opened);
+        ASSERT_EQ(closing(region, element), closed);
+      }
+      use_kernel(before);
+    }
+  }
+}
+
+TEST(MorphologyDeathTest, LeavingSixteenBitStopsOnBitPlanesToo) {
+  RunVector runs;
+  for (int r = 0; r < 40; ++r)
+    for (int c = 0; c < 40; c += 2)
+      runs.push_back(
+          {static_cast<std::int16_t>(r), static_cast<std::int16_t>(32700 + c), static_cast<std::int16_t>(32701 + c)});
+  const Region region = Region::from_sorted(runs);
+  EXPECT_DEATH(dilation(region, rectangle(99, 3)), "run coordinates stay within signed 16 bit");
 }
 
 }  // namespace

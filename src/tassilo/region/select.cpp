@@ -1,7 +1,6 @@
 #include "tassilo/region/select.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -29,8 +28,9 @@ RecycledVector<Region> sorted_by(std::span<const Region> regions, const Recycled
 }  // namespace
 
 bool fits(const Region& region, std::span<const FeatureRange> ranges) {
+  FeatureMeter meter(region);
   return std::ranges::all_of(ranges, [&](const FeatureRange& range) {
-    const double value = feature_value(region, range.feature);
+    const double value = meter(range.feature);
     return value >= range.min && value <= range.max;
   });
 }

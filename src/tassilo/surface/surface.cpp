@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <string>
 
 #include "tassilo/base/contract.h"
@@ -18,29 +19,42 @@ void paint(Surface& surface, const Region& region, SurfaceKind kind) {
   }
 }
 
+// Eight pixels at once. Of the kinds only floor has bit 1, and of floor only lines have bit 0.
+static_assert(static_cast<int>(SurfaceKind::carpet) == 2 && static_cast<int>(SurfaceKind::line) == 3 &&
+              static_cast<int>(SurfaceKind::object) == 1 && static_cast<int>(SurfaceKind::wall) == 4);
+constexpr std::size_t kWord = 8;
+constexpr std::uint64_t kBit0 = 0x0101010101010101, kBit1 = kBit0 << 1;
+
 /// How long a line lying on the floor at a pixel may show along row or column.
 class LineSize {
  public:
   LineSize(const SurfaceInput& input, const GroundMap* ground, const SurfaceOptions& options)
-      : input_(input), ground_(ground), options_(options) {}
+      : input_(input),
+        ground_(ground),
+        rims_(2.0 * options.blur_px),
+        widest_(options.slant * options.line_width),
+        widest_px_(std::max(3.0, input.width / 40.0)) {}
 
-  double along_row(int c, int r) const { return longest(c, r, 1, 0); }
-  double along_column(int c, int r) const { return longest(c, r, 0, 1); }
-
- private:
-  double longest(int c, int r, int dc, int dr) const {
-    const double rims = 2.0 * options_.blur_px;
-    if (ground_ == nullptr) return std::max(3.0, input_.width / 40.0) + rims;
+  /// May `pixels` along the row (or the column) around (c, r) be a line, `wider` times as wide as one alone?
+  bool holds(int c, int r, bool along_row, double pixels, double wider) const {
+    if (ground_ == nullptr) return pixels <= wider * (widest_px_ + rims_);
+    int dc = along_row ? 1 : 0, dr = along_row ? 0 : 1;
     if (c + dc >= input_.width) dc = -dc;
     if (r + dr >= input_.height) dr = -dr;
     const auto here = ground_->at(c, r), beside = ground_->at(c + dc, r + dr);
-    if (!here || !beside) return 0;  // above the horizon lies no line
-    return options_.slant * options_.line_width / std::max(1e-6, distance(*here, *beside)) + rims;
+    if (!here || !beside) return false;  // above the horizon lies no line
+    const double blurred = pixels - wider * rims_;
+    if (blurred <= 0) return true;
+    const FloorPoint pixel = *beside - *here;
+    return blurred * blurred * dot(pixel, pixel) <= wider * wider * widest_ * widest_;
   }
 
+ private:
   const SurfaceInput& input_;
   const GroundMap* ground_;
-  const SurfaceOptions& options_;
+  double rims_;       ///< Of both sides. [px]
+  double widest_;     ///< [m]
+  double widest_px_;  ///< Without calibration.
 };
 
 /// A stretch of pixels along a row or a column with carpet before and after it.
@@ -89,8 +103,8 @@ class Judge {
 
   bool is_narrow(const Gap& gap, double wider) const {
     const int middle = gap.length / 2;
-    return gap.length <= wider * (gap.along_row ? size_.along_row(gap.column + middle, gap.row)
-                                                : size_.along_column(gap.column, gap.row + middle));
+    return gap.along_row ? size_.holds(gap.column + middle, gap.row, true, gap.length, wider)
+                         : size_.holds(gap.column, gap.row + middle, false, gap.length, wider);
   }
 
   void mark(const Gap& gap) {
@@ -137,6 +151,41 @@ void SurfaceOptions::check() const {
   if (blur_px < 0) throw Error("surface.blur_px", "is " + std::to_string(blur_px) + ", must be >= 0");
 }
 
+void Surface::update_tiles() {
+  static_assert(kTile == kWord);
+  const auto columns = static_cast<std::size_t>(width), across = static_cast<std::size_t>(tiles_across());
+  tiles.clear();
+  tiles.reserve(across * static_cast<std::size_t>(tiles_down()));
+  /// Bits that all, some pixels of a column of a tile have; bit 0 of `line` where some are lines.
+  RecycledVector<std::uint64_t> all(across), some(across), line(across);
+  for (int top = 0; top < height; top += kTile) {
+    std::ranges::fill(all, ~std::uint64_t{0});
+    std::ranges::fill(some, 0);
+    std::ranges::fill(line, 0);
+    for (int r = top; r < std::min(top + kTile, height); ++r) {
+      const SurfaceKind* const from = row(r).data();
+      for (std::size_t k = 0; k < columns / kWord; ++k) {
+        std::uint64_t word;
+        std::memcpy(&word, from + k * kWord, kWord);
+        all[k] &= word;
+        some[k] |= word;
+        line[k] |= word & (word >> 1);
+      }
+      // What is beside the image neither keeps a tile from being all floor nor adds anything.
+      for (std::size_t c = columns / kWord * kWord; c < columns; ++c) {
+        const auto kind = static_cast<std::uint64_t>(from[c]);
+        all.back() &= kind * kBit0;
+        some.back() |= kind;
+        line.back() |= kind & (kind >> 1);
+      }
+    }
+    for (std::size_t k = 0; k < across; ++k)
+      tiles.push_back(static_cast<std::uint8_t>(((all[k] & kBit1) == kBit1 ? all_floor : 0) |
+                                                ((some[k] & kBit1) != 0 ? some_floor : 0) |
+                                                ((line[k] & kBit0) != 0 ? some_line : 0)));
+  }
+}
+
 Surface find_surface(const SurfaceInput& input, const GroundMap* ground, const SurfaceOptions& options,
                      Surface recycled) {
   expects(input.carpet != nullptr && input.white != nullptr, "surface: carpet and white are given");
@@ -159,6 +208,7 @@ Surface find_surface(const SurfaceInput& input, const GroundMap* ground, const S
   for (const Gap& gap : gaps)
     if (!judge.has_object(gap) && !judge.accept(gap)) wide.push_back(gap);
   for (const Gap& gap : wide) judge.accept_between_lines(gap);
+  surface.update_tiles();
   return surface;
 }
 

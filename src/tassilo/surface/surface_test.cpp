@@ -2,6 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <random>
+#include <utility>
+#include <vector>
+
 #include "tassilo/base/error.h"
 #include "tassilo/camera/test_world.h"
 
@@ -88,6 +94,54 @@ TEST(SurfaceOptions, RefusesWhatIsOutOfRange) {
   SurfaceOptions options;
   options.line_width = 0;
   EXPECT_THROW(options.check(), Error);
+}
+
+TEST(SurfaceTiles, WalksOverTilesEqualThoseOverPixels) {
+  std::mt19937 random(1);
+  for (const auto& [width, height] : {std::pair(1, 1), std::pair(8, 8), std::pair(7, 20), std::pair(41, 25)})
+    for (const int odd : {0, 3, 60, 100})  // percent
+      for (const SurfaceKind most : {SurfaceKind::carpet, SurfaceKind::line, SurfaceKind::wall}) {
+        SCOPED_TRACE(testing::Message() << width << " x " << height << ", " << odd << " % odd");
+        Surface surface;
+        surface.width = width;
+        surface.height = height;
+        for (int i = 0; i < width * height; ++i)
+          surface.kinds.push_back(static_cast<int>(random() % 100) < odd ? static_cast<SurfaceKind>(random() % 5)
+                                                                         : most);
+        surface.update_tiles();
+        for (int r = 0; r < height; ++r)
+          for (int c = 0; c < width; ++c) {
+            const int tile = surface.tile_row(r / Surface::kTile)[static_cast<std::size_t>(c / Surface::kTile)];
+            if ((tile & Surface::all_floor) != 0) {
+              EXPECT_TRUE(surface.is_floor(c, r));
+            }
+            if ((tile & Surface::some_floor) == 0) {
+              EXPECT_FALSE(surface.is_floor(c, r));
+            }
+            if ((tile & Surface::some_line) == 0) {
+              EXPECT_NE(surface.at(c, r), SurfaceKind::line);
+            }
+          }
+        std::vector<std::array<int, 3>> runs, plain_runs;
+        for_each_line_run(surface, [&](int r, int begin, int end) { runs.push_back({r, begin, end}); });
+        std::vector<std::array<int, 2>> ends, plain_ends;
+        for_each_floor_end(surface, [&](int c, int r) { ends.push_back({r, c}); });
+        for (int r = 0; r < height; ++r)
+          for (int c = 0; c < width; ++c) {
+            const auto is_line = [&](int column) {
+              return column >= 0 && column < width && surface.at(column, r) == SurfaceKind::line;
+            };
+            if (is_line(c) && !is_line(c - 1)) {
+              int end = c;
+              while (is_line(end)) ++end;
+              plain_runs.push_back({r, c, end});
+            }
+            if (r + 1 < height && !surface.is_floor(c, r) && surface.is_floor(c, r + 1)) plain_ends.push_back({r, c});
+          }
+        EXPECT_EQ(runs, plain_runs);
+        std::ranges::sort(ends);  // by tile first
+        EXPECT_EQ(ends, plain_ends);
+      }
 }
 
 }  // namespace

@@ -17,7 +17,8 @@ struct ThreeRows {
   const std::uint8_t *above, *here, *below;
 };
 
-/// Where the runs of a row go; each array has room for width + 64 entries.
+/// Where the runs of a row go, those of equal labels but no_color, from left to right; each array has room for
+/// width + 64 entries.
 struct RowRuns {
   std::uint16_t *begin, *end;  ///< [px]
   std::uint8_t* label;
@@ -27,15 +28,14 @@ struct RowRuns {
 struct ColorKernel {
   /// Claims of `pairs` chroma cells.
   void (*claims)(const KernelTable& table, const YuvRow& row, int pairs, std::uint8_t* claims);
-  /// Labels 0..8 of `width` pixels from the claims of (width + 1) / 2 cells.
-  void (*labels)(const KernelTable& table, const std::uint8_t* claims, const YuvRow& row, int width,
-                 std::uint8_t* labels);
-  /// The runs of equal labels but those of no_color, from left to right. Returns their number.
-  int (*runs)(const std::uint8_t* labels, int width, const RowRuns& runs);
+  /// Labels 0..8 of `width` pixels from the claims of (width + 1) / 2 cells, and their runs unless `runs` is null.
+  /// Returns how many runs.
+  int (*labels)(const KernelTable& table, const std::uint8_t* claims, const YuvRow& row, int width,
+                std::uint8_t* labels, const RowRuns* runs);
   /// Labels that all nine pixels around and at a place share, else no_color; beside the row is no_color.
   void (*erode)(const ThreeRows& rows, int width, std::uint8_t* labels);
-  /// The label that any of the nine pixels has; those that are not no_color must be equal.
-  void (*dilate)(const ThreeRows& rows, int width, std::uint8_t* labels);
+  /// The label that any of the nine pixels has; those that are not no_color must be equal. And their runs, as `labels`.
+  int (*dilate)(const ThreeRows& rows, int width, std::uint8_t* labels, const RowRuns& runs);
 };
 
 /// The functions to take for a kernel.

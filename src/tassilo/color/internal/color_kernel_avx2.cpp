@@ -21,13 +21,77 @@ TASSILO_AVX2 inline __m256i twice(const std::array<std::uint8_t, 16>& table) {
   return _mm256_broadcastsi128_si256(_mm_loadu_si128(reinterpret_cast<const __m128i*>(table.data())));
 }
 
-/// Each cell is a memory access: AVX2 has no table of 64 bytes, and its gather is no faster.
-void claims_of(const KernelTable& table, const YuvRow& row, int pairs, std::uint8_t* claims) {
-  plain_color_kernel.claims(table, row, pairs, claims);
+/// Sixteen table look-ups by 16-bit numbers: each cell is a memory access, for AVX2 has no table of 64 bytes and its
+/// gather is no faster.
+TASSILO_AVX2 inline __m128i look_up_16(const std::uint8_t* table, __m128i first_eight, __m128i last_eight) {
+  alignas(16) std::array<std::uint16_t, 16> at;
+  _mm_store_si128(reinterpret_cast<__m128i*>(at.data()), first_eight);
+  _mm_store_si128(reinterpret_cast<__m128i*>(at.data() + 8), last_eight);
+  // Two chains of insertions do not wait for each other.
+  __m128i even = _mm_setzero_si128(), odd = even;
+#define TASSILO_INSERT(k)                        \
+  even = _mm_insert_epi8(even, table[at[k]], k); \
+  odd = _mm_insert_epi8(odd, table[at[(k) + 1]], (k) + 1);
+  TASSILO_INSERT(0)
+  TASSILO_INSERT(2)
+  TASSILO_INSERT(4)
+  TASSILO_INSERT(6)
+  TASSILO_INSERT(8)
+  TASSILO_INSERT(10)
+  TASSILO_INSERT(12)
+  TASSILO_INSERT(14)
+#undef TASSILO_INSERT
+  return _mm_or_si128(even, odd);
 }
 
-TASSILO_AVX2 void labels_of(const KernelTable& table, const std::uint8_t* claims, const YuvRow& row, int width,
-                            std::uint8_t* labels) {
+TASSILO_AVX2 void claims_of(const KernelTable& table, const YuvRow& row, int pairs, std::uint8_t* claims) {
+  const std::uint8_t* chroma = table.chroma.data();
+  const auto load16 = [](const std::uint8_t* from)
+                          TASSILO_AVX2 { return _mm_loadu_si128(reinterpret_cast<const __m128i*>(from)); };
+  int k = 0;
+  if (row.chroma_step == 1) {
+    for (; k + 16 <= pairs; k += 16) {
+      const __m128i u = load16(row.u + k), v = load16(row.v + k);
+      const __m128i found = look_up_16(chroma, _mm_unpacklo_epi8(u, v), _mm_unpackhi_epi8(u, v));
+      _mm_storeu_si128(reinterpret_cast<__m128i*>(claims + k), found);
+    }
+  } else if (row.chroma_step == 2 && row.u + 1 == row.v) {
+    for (; k + 16 <= pairs; k += 16) {
+      const __m128i found = look_up_16(chroma, load16(row.u + 2 * k), load16(row.u + 2 * k + 16));
+      _mm_storeu_si128(reinterpret_cast<__m128i*>(claims + k), found);
+    }
+  }
+  const YuvRow rest{row.y, row.u + k * row.chroma_step, row.v + k * row.chroma_step, row.y_step, row.chroma_step};
+  plain_color_kernel.claims(table, rest, pairs - k, claims + k);
+}
+
+TASSILO_AVX2 int runs_of(const std::uint8_t* labels, int width, const RowRuns& runs) {
+  int count = 0;
+  std::uint8_t label = 0;  // of the run at work
+  const auto change = [&](int c, std::uint8_t to) {
+    runs.end[count] = static_cast<std::uint16_t>(c);
+    count += label != 0;
+    runs.begin[count] = static_cast<std::uint16_t>(c);
+    runs.label[count] = label = to;
+  };
+  if (width > 0 && labels[0] != 0) change(0, labels[0]);
+  int c = 1;
+  for (; c + 32 <= width; c += 32) {
+    const __m256i same = _mm256_cmpeq_epi8(load(labels + c), load(labels + c - 1));
+    auto changed = ~static_cast<std::uint32_t>(_mm256_movemask_epi8(same));
+    for (; changed != 0; changed &= changed - 1) {
+      const int at = c + __builtin_ctz(changed);
+      change(at, labels[at]);
+    }
+  }
+  for (; c < width; ++c)
+    if (labels[c] != labels[c - 1]) change(c, labels[c]);
+  if (width > 0 && label != 0) change(width, 0);
+  return count;
+}
+
+TASSILO_AVX2 int labels_of(const KernelTable& table, const std::uint8_t* claims, const YuvRow& row, int width,
+                           std::uint8_t* labels, const RowRuns* runs) {
   const KernelTable::HalfBytes& halves = table.half_bytes;
   const __m256i whole = twice(halves.whole), first = twice(halves.first), last = twice(halves.last),
                 both = twice(halves.both), from = twice(halves.from), to = twice(halves.to);
@@ -66,32 +130,8 @@ TASSILO_AVX2 void labels_of(const KernelTable& table, const std::uint8_t* claims
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(labels + c), label);
   }
   const YuvRow rest{row.y + c * row.y_step, row.u, row.v, row.y_step, row.chroma_step};
-  plain_color_kernel.labels(table, claims + c / 2, rest, width - c, labels + c);
-}
-
-TASSILO_AVX2 int runs_of(const std::uint8_t* labels, int width, const RowRuns& runs) {
-  int count = 0;
-  std::uint8_t label = 0;  // of the run at work
-  const auto change = [&](int c, std::uint8_t to) {
-    runs.end[count] = static_cast<std::uint16_t>(c);
-    count += label != 0;
-    runs.begin[count] = static_cast<std::uint16_t>(c);
-    runs.label[count] = label = to;
-  };
-  if (width > 0 && labels[0] != 0) change(0, labels[0]);
-  int c = 1;
-  for (; c + 32 <= width; c += 32) {
-    const __m256i same = _mm256_cmpeq_epi8(load(labels + c), load(labels + c - 1));
-    auto changed = ~static_cast<std::uint32_t>(_mm256_movemask_epi8(same));
-    for (; changed != 0; changed &= changed - 1) {
-      const int at = c + __builtin_ctz(changed);
-      change(at, labels[at]);
-    }
-  }
-  for (; c < width; ++c)
-    if (labels[c] != labels[c - 1]) change(c, labels[c]);
-  if (width > 0 && label != 0) change(width, 0);
-  return count;
+  plain_color_kernel.labels(table, claims + c / 2, rest, width - c, labels + c, nullptr);
+  return runs == nullptr ? 0 : runs_of(labels, width, *runs);
 }
 
 /// The block of 32 bytes, of which those from `width` on are 0.
@@ -142,9 +182,14 @@ TASSILO_AVX2 void over_nine(const ThreeRows& rows, int width, std::uint8_t* labe
   }
 }
 
+TASSILO_AVX2 int dilate_rows(const ThreeRows& rows, int width, std::uint8_t* labels, const RowRuns& runs) {
+  over_nine<Dilate>(rows, width, labels);
+  return runs_of(labels, width, runs);
+}
+
 }  // namespace
 
-constinit const ColorKernel avx2_color_kernel{claims_of, labels_of, runs_of, over_nine<Erode>, over_nine<Dilate>};
+constinit const ColorKernel avx2_color_kernel{claims_of, labels_of, over_nine<Erode>, dilate_rows};
 
 }  // namespace tassilo
 

@@ -13,6 +13,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstring>
 
 #include "tassilo/color/internal/color_kernel.h"
 
@@ -40,23 +41,65 @@ TASSILO_AVX512 inline __m512i load(const Numbers<Number>& numbers) {
   return _mm512_load_si512(numbers.values.data());
 }
 
-/// Claims of 64 cells. The steps of a row come by rising U: when no cell has reached one, none reaches the next.
-TASSILO_AVX512 inline __m512i claims_of_cells(const KernelTable& table, __m512i u, __m512i v) {
-  __m512i claims = _mm512_setzero_si512();
+/// U and V of the 64 cells from k on.
+struct Cells {
+  __m512i u, v;
+};
+TASSILO_AVX512 inline Cells cells_at(const YuvRow& row, int k) {
+  if (row.chroma_step == 1) return {load(row.u + k), load(row.v + k)};
+  // NV12 has U V U V .., packed formats (Y) U (Y) V ..: first the chroma bytes, then U apart from V.
+  const __m512i even = load(kEven), odd = load(kOdd);
+  const bool u_first = row.u < row.v;
+  const std::uint8_t* first = (u_first ? row.u : row.v) + k * row.chroma_step;
+  __m512i a, b;
+  if (row.chroma_step == 2) {
+    a = load(first);
+    b = load(first + 64);
+  } else {
+    // Begins at the pixel before a leading Y, so that no byte behind the row is read.
+    const bool y_first = row.y < row.u;
+    const std::uint8_t* block = y_first ? first - 1 : first;
+    const __m512i chroma = y_first ? odd : even;
+    a = _mm512_permutex2var_epi8(load(block), chroma, load(block + 64));
+    b = _mm512_permutex2var_epi8(load(block + 128), chroma, load(block + 192));
+  }
+  return {_mm512_permutex2var_epi8(a, u_first ? even : odd, b), _mm512_permutex2var_epi8(a, u_first ? odd : even, b)};
+}
+
+/// Claims of N times 64 cells: a step's tables are loaded once for all. The steps of a row come by rising U: when no
+/// cell has reached one, none reaches the next.
+template <std::size_t N>
+TASSILO_AVX512 inline void claims_of_cells(const KernelTable& table, const Cells (&cells)[N], std::uint8_t* claims) {
+  __m512i found[N];
+  for (std::size_t i = 0; i < N; ++i) found[i] = _mm512_setzero_si512();
   for (const KernelTable::Window& window : table.windows) {
-    const __m512i row = _mm512_sub_epi8(v, _mm512_set1_epi8(static_cast<char>(window.first_v)));
-    const __mmask64 inside = _mm512_cmplt_epu8_mask(row, _mm512_set1_epi8(static_cast<char>(128)));
-    if (inside == 0) continue;
+    __m512i row[N];
+    __mmask64 inside[N];
+    __mmask64 any = 0;
+    for (std::size_t i = 0; i < N; ++i) {
+      row[i] = _mm512_sub_epi8(cells[i].v, _mm512_set1_epi8(static_cast<char>(window.first_v)));
+      inside[i] = _mm512_cmplt_epu8_mask(row[i], _mm512_set1_epi8(static_cast<char>(128)));
+      any |= inside[i];
+    }
+    if (any == 0) continue;
     for (const KernelTable::Step& step : window.steps) {
-      const __m512i from = _mm512_permutex2var_epi8(load(step.from.data()), row, load(step.from.data() + 64));
-      const __mmask64 reached = _mm512_mask_cmpge_epu8_mask(inside, u, from);
-      if (reached == 0) break;
-      const __m512i change =
-          _mm512_maskz_permutex2var_epi8(reached, load(step.change.data()), row, load(step.change.data() + 64));
-      claims = _mm512_xor_si512(claims, change);
+      const __m512i from_low = load(step.from.data()), from_high = load(step.from.data() + 64);
+      __mmask64 reached[N];
+      any = 0;
+      for (std::size_t i = 0; i < N; ++i) {
+        const __m512i from = _mm512_permutex2var_epi8(from_low, row[i], from_high);
+        reached[i] = _mm512_mask_cmpge_epu8_mask(inside[i], cells[i].u, from);
+        any |= reached[i];
+      }
+      if (any == 0) break;
+      const __m512i change_low = load(step.change.data()), change_high = load(step.change.data() + 64);
+      for (std::size_t i = 0; i < N; ++i) {
+        const __m512i change = _mm512_maskz_permutex2var_epi8(reached[i], change_low, row[i], change_high);
+        found[i] = _mm512_xor_si512(found[i], change);
+      }
     }
   }
-  return claims;
+  for (std::size_t i = 0; i < N; ++i) _mm512_storeu_si512(claims + 64 * i, found[i]);
 }
 
 TASSILO_AVX512 void claims_of(const KernelTable& table, const YuvRow& row, int pairs, std::uint8_t* claims) {
@@ -64,39 +107,21 @@ TASSILO_AVX512 void claims_of(const KernelTable& table, const YuvRow& row, int p
     plain_color_kernel.claims(table, row, pairs, claims);
     return;
   }
-  const __m512i even = load(kEven), odd = load(kOdd);
   int k = 0;
+  for (; k + 128 <= pairs; k += 128) {
+    claims_of_cells<2>(table, {cells_at(row, k), cells_at(row, k + 64)}, claims + k);
+  }
   for (; k + 64 <= pairs; k += 64) {
-    __m512i u, v;
-    if (row.chroma_step == 1) {
-      u = load(row.u + k);
-      v = load(row.v + k);
-    } else {
-      // NV12 has U V U V .., packed formats (Y) U (Y) V ..: first the chroma bytes, then U apart from V.
-      const bool u_first = row.u < row.v;
-      const std::uint8_t* first = (u_first ? row.u : row.v) + k * row.chroma_step;
-      __m512i a, b;
-      if (row.chroma_step == 2) {
-        a = load(first);
-        b = load(first + 64);
-      } else {
-        // Begins at the pixel before a leading Y, so that no byte behind the row is read.
-        const bool y_first = row.y < row.u;
-        const std::uint8_t* block = y_first ? first - 1 : first;
-        const __m512i chroma = y_first ? odd : even;
-        a = _mm512_permutex2var_epi8(load(block), chroma, load(block + 64));
-        b = _mm512_permutex2var_epi8(load(block + 128), chroma, load(block + 192));
-      }
-      u = _mm512_permutex2var_epi8(a, u_first ? even : odd, b);
-      v = _mm512_permutex2var_epi8(a, u_first ? odd : even, b);
-    }
-    _mm512_storeu_si512(claims + k, claims_of_cells(table, u, v));
+    claims_of_cells<1>(table, {cells_at(row, k)}, claims + k);
   }
   if (k == pairs) return;
+  const auto n = static_cast<unsigned>(pairs - k);
   if (row.chroma_step == 1) {
-    const __mmask64 rest = _bzhi_u64(~0ull, static_cast<unsigned>(pairs - k));
-    const __m512i u = _mm512_maskz_loadu_epi8(rest, row.u + k), v = _mm512_maskz_loadu_epi8(rest, row.v + k);
-    _mm512_mask_storeu_epi8(claims + k, rest, claims_of_cells(table, u, v));
+    const __mmask64 rest = _bzhi_u64(~0ull, n);
+    alignas(64) std::array<std::uint8_t, 64> block;
+    const Cells cells{_mm512_maskz_loadu_epi8(rest, row.u + k), _mm512_maskz_loadu_epi8(rest, row.v + k)};
+    claims_of_cells<1>(table, {cells}, block.data());
+    std::memcpy(claims + k, block.data(), n);
   } else {
     const YuvRow rest{row.y, row.u + k * row.chroma_step, row.v + k * row.chroma_step, row.y_step, row.chroma_step};
     plain_color_kernel.claims(table, rest, pairs - k, claims + k);
@@ -121,41 +146,14 @@ TASSILO_AVX512 inline __m512i labels_of_pixels(const Table256& bright, __m512i l
   return _mm512_permutexvar_epi8(_mm512_popcnt_epi8(below), label_of_rank);
 }
 
-TASSILO_AVX512 void labels_of(const KernelTable& table, const std::uint8_t* claims, const YuvRow& row, int width,
-                              std::uint8_t* labels) {
-  const std::uint8_t* of_y = table.bright.data();
-  const Table256 bright{load(of_y), load(of_y + 64), load(of_y + 128), load(of_y + 192)};
-  const __m512i label_of_rank =
-      _mm512_broadcast_i32x4(_mm_loadu_si128(reinterpret_cast<const __m128i*>(table.label_of_rank.data())));
-  const __m512i half = load(kHalf), even = load(kEven), odd = load(kOdd);
-  int c = 0;
-  for (; c + 64 <= width; c += 64) {
-    const __m512i pairs = _mm512_castsi256_si512(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(claims + c / 2)));
-    __m512i y;
-    if (row.y_step == 1) {
-      y = load(row.y + c);
-    } else if (row.y < row.u) {
-      y = _mm512_permutex2var_epi8(load(row.y + 2 * c), even, load(row.y + 2 * c + 64));
-    } else {
-      // U Y V Y: begins one byte before Y, so that no byte behind the row is read.
-      y = _mm512_permutex2var_epi8(load(row.y + 2 * c - 1), odd, load(row.y + 2 * c + 63));
-    }
-    _mm512_storeu_si512(labels + c, labels_of_pixels(bright, label_of_rank, _mm512_permutexvar_epi8(half, pairs), y));
-  }
-  if (c == width) return;
-  if (row.y_step == 1) {
-    const auto n = static_cast<unsigned>(width - c);
-    const __mmask64 rest = _bzhi_u64(~0ull, n);
-    const __m512i pairs = _mm512_maskz_loadu_epi8(_bzhi_u64(~0ull, (n + 1) / 2), claims + c / 2);
-    const __m512i y = _mm512_maskz_loadu_epi8(rest, row.y + c);
-    _mm512_mask_storeu_epi8(labels + c, rest,
-                            labels_of_pixels(bright, label_of_rank, _mm512_permutexvar_epi8(half, pairs), y));
-  } else {
-    const YuvRow rest{row.y + c * row.y_step, row.u, row.v, row.y_step, row.chroma_step};
-    plain_color_kernel.labels(table, claims + c / 2, rest, width - c, labels + c);
-  }
+/// Neighbors to the left and to the right of 64 pixels.
+TASSILO_AVX512 inline __m512i left_of(__m512i before, __m512i here) {
+  // Byte 63 of the block before, then bytes 0 .. 62.
+  return _mm512_permutex2var_epi8(before, load(kLeft), here);
 }
-
+TASSILO_AVX512 inline __m512i right_of(__m512i here, __m512i after) {
+  return _mm512_permutex2var_epi8(here, load(kRight), after);
+}
 /// Columns of the set bits to `to`, which has room for 64.
 TASSILO_AVX512 inline void store_columns(__mmask64 bits, int c, std::uint16_t* to) {
   const __m512i columns = _mm512_maskz_compress_epi8(bits, load(kBytes));
@@ -173,19 +171,18 @@ TASSILO_AVX512 inline void store_columns(__mmask64 bits, int c, std::uint16_t* t
     _mm512_storeu_si512(to + 32, _mm512_add_epi16(_mm512_cvtepu8_epi16(_mm512_extracti64x4_epi64(columns, 1)), first));
 }
 
-TASSILO_AVX512 int runs_of(const std::uint8_t* labels, int width, const RowRuns& runs) {
+/// Writes the runs of a row, 64 pixels after 64.
+struct RunWriter {
+  const RowRuns& runs;
   int begins = 0, ends = 0;
-  for (int c = 0; c < width; c += 64) {
-    const auto n = static_cast<unsigned>(width - c);
-    const __mmask64 inside = n >= 64 ? ~0ull : _bzhi_u64(~0ull, n);
-    const __m512i here = _mm512_maskz_loadu_epi8(inside, labels + c);
-    // The first pixel's neighbor is no_color; behind the last pixel there is one more, to see the last run end.
-    const __mmask64 known = c == 0 ? (inside << 1) & ~1ull : (inside << 1) | 1ull;
-    const __m512i before = _mm512_maskz_loadu_epi8(known, labels + c - 1);
-    const __mmask64 changed = _mm512_cmpneq_epi8_mask(here, before);
-    if (changed == 0) continue;
+
+  /// The pixels from c on; those behind the row are no_color. `before` is the block before them.
+  TASSILO_AVX512 void add(int c, __m512i before, __m512i here) {
+    const __m512i left = left_of(before, here);
+    const __mmask64 changed = _mm512_cmpneq_epi8_mask(here, left);
+    if (changed == 0) return;
     const __mmask64 begin = _mm512_mask_test_epi8_mask(changed, here, here);
-    const __mmask64 end = _mm512_mask_test_epi8_mask(changed, before, before);
+    const __mmask64 end = _mm512_mask_test_epi8_mask(changed, left, left);
     const __m512i label = _mm512_maskz_compress_epi8(begin, here);
     store_columns(begin, c, runs.begin + begins);
     store_columns(end, c, runs.end + ends);
@@ -197,18 +194,60 @@ TASSILO_AVX512 int runs_of(const std::uint8_t* labels, int width, const RowRuns&
     begins += count;
     ends += __builtin_popcountll(end);
   }
-  if (ends < begins) runs.end[ends] = static_cast<std::uint16_t>(width);  // up to the border, which ends a block
-  return begins;
+  /// Returns how many there are.
+  int finish(int width) const {
+    if (ends < begins) runs.end[ends] = static_cast<std::uint16_t>(width);  // up to the border, which ends a block
+    return begins;
+  }
+};
+
+template <class Use>
+TASSILO_AVX512 inline void for_labels(const KernelTable& table, const std::uint8_t* claims, const YuvRow& row,
+                                      int width, std::uint8_t* labels, Use use) {
+  const std::uint8_t* of_y = table.bright.data();
+  const Table256 bright{load(of_y), load(of_y + 64), load(of_y + 128), load(of_y + 192)};
+  const __m512i label_of_rank =
+      _mm512_broadcast_i32x4(_mm_loadu_si128(reinterpret_cast<const __m128i*>(table.label_of_rank.data())));
+  const __m512i half = load(kHalf), even = load(kEven), odd = load(kOdd);
+  __m512i before = _mm512_setzero_si512();
+  int c = 0;
+  for (; c + 64 <= width; c += 64) {
+    const __m512i pairs = _mm512_castsi256_si512(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(claims + c / 2)));
+    __m512i y;
+    if (row.y_step == 1) {
+      y = load(row.y + c);
+    } else if (row.y < row.u) {
+      y = _mm512_permutex2var_epi8(load(row.y + 2 * c), even, load(row.y + 2 * c + 64));
+    } else {
+      // U Y V Y: begins one byte before Y, so that no byte behind the row is read.
+      y = _mm512_permutex2var_epi8(load(row.y + 2 * c - 1), odd, load(row.y + 2 * c + 63));
+    }
+    const __m512i here = labels_of_pixels(bright, label_of_rank, _mm512_permutexvar_epi8(half, pairs), y);
+    _mm512_storeu_si512(labels + c, here);
+    use(c, before, here);
+    before = here;
+  }
+  if (c < width) {
+    alignas(64) std::array<std::uint8_t, 64> rest{};
+    for (int k = c; k < width; ++k)
+      rest[static_cast<std::size_t>(k - c)] = table.label(claims[k / 2], row.y[k * row.y_step]);
+    std::memcpy(labels + c, rest.data(), static_cast<std::size_t>(width - c));
+    use(c, before, load(rest.data()));
+  }
 }
 
-/// Neighbors to the left and to the right of 64 pixels.
-TASSILO_AVX512 inline __m512i left_of(__m512i before, __m512i here) {
-  // Byte 63 of the block before, then bytes 0 .. 62.
-  return _mm512_permutex2var_epi8(before, load(kLeft), here);
+TASSILO_AVX512 int labels_of(const KernelTable& table, const std::uint8_t* claims, const YuvRow& row, int width,
+                             std::uint8_t* labels, const RowRuns* runs) {
+  if (runs == nullptr) {
+    for_labels(table, claims, row, width, labels, [](int, __m512i, __m512i) TASSILO_AVX512 {});
+    return 0;
+  }
+  RunWriter writer{*runs};
+  for_labels(table, claims, row, width, labels,
+             [&](int c, __m512i before, __m512i here) TASSILO_AVX512 { writer.add(c, before, here); });
+  return writer.finish(width);
 }
-TASSILO_AVX512 inline __m512i right_of(__m512i here, __m512i after) {
-  return _mm512_permutex2var_epi8(here, load(kRight), after);
-}
+
 TASSILO_AVX512 inline __m512i same(__m512i a, __m512i b, __m512i c) {
   return _mm512_maskz_mov_epi8(_mm512_mask_cmpeq_epu8_mask(_mm512_cmpeq_epu8_mask(a, b), c, b), b);
 }
@@ -235,25 +274,41 @@ TASSILO_AVX512 inline __m512i column(const ThreeRows& rows, int width, int c) {
                          _mm512_maskz_loadu_epi8(inside, rows.below + c));
 }
 
-template <class Operation>
-TASSILO_AVX512 void over_nine(const ThreeRows& rows, int width, std::uint8_t* labels) {
-  __m512i before = _mm512_setzero_si512(), here = column<Operation>(rows, width, 0);
+template <class Operation, class Use>
+TASSILO_AVX512 inline void over_nine(const ThreeRows& rows, int width, std::uint8_t* labels, Use use) {
+  __m512i before = _mm512_setzero_si512(), here = column<Operation>(rows, width, 0), out_before = before;
   for (int c = 0; c < width; c += 64) {
     const __m512i after = column<Operation>(rows, width, c + 64);
-    const __m512i out = Operation::join(left_of(before, here), here, right_of(here, after));
+    __m512i out = Operation::join(left_of(before, here), here, right_of(here, after));
     // Stores with a mask of bytes are slow on some machines: only at the end of a row.
-    if (c + 64 <= width)
+    if (c + 64 <= width) {
       _mm512_storeu_si512(labels + c, out);
-    else
-      _mm512_mask_storeu_epi8(labels + c, _bzhi_u64(~0ull, static_cast<unsigned>(width - c)), out);
+    } else {
+      const __mmask64 inside = _bzhi_u64(~0ull, static_cast<unsigned>(width - c));
+      out = _mm512_maskz_mov_epi8(inside, out);
+      _mm512_mask_storeu_epi8(labels + c, inside, out);
+    }
+    use(c, out_before, out);
     before = here;
     here = after;
+    out_before = out;
   }
+}
+
+TASSILO_AVX512 void erode_rows(const ThreeRows& rows, int width, std::uint8_t* labels) {
+  over_nine<Erode>(rows, width, labels, [](int, __m512i, __m512i) TASSILO_AVX512 {});
+}
+
+TASSILO_AVX512 int dilate_rows(const ThreeRows& rows, int width, std::uint8_t* labels, const RowRuns& runs) {
+  RunWriter writer{runs};
+  over_nine<Dilate>(rows, width, labels,
+                    [&](int c, __m512i before, __m512i here) TASSILO_AVX512 { writer.add(c, before, here); });
+  return writer.finish(width);
 }
 
 }  // namespace
 
-constinit const ColorKernel avx512_color_kernel{claims_of, labels_of, runs_of, over_nine<Erode>, over_nine<Dilate>};
+constinit const ColorKernel avx512_color_kernel{claims_of, labels_of, erode_rows, dilate_rows};
 
 }  // namespace tassilo
 

@@ -60,8 +60,35 @@ void claims_of(const KernelTable& table, const YuvRow& row, int pairs, std::uint
   plain_color_kernel.claims(table, rest, pairs - k, claims + k);
 }
 
-void labels_of(const KernelTable& table, const std::uint8_t* claims, const YuvRow& row, int width,
-               std::uint8_t* labels) {
+int runs_of(const std::uint8_t* labels, int width, const RowRuns& runs) {
+  int count = 0;
+  std::uint8_t label = 0;  // of the run at work
+  const auto change = [&](int c, std::uint8_t to) {
+    runs.end[count] = static_cast<std::uint16_t>(c);
+    count += label != 0;
+    runs.begin[count] = static_cast<std::uint16_t>(c);
+    runs.label[count] = label = to;
+  };
+  if (width > 0 && labels[0] != 0) change(0, labels[0]);
+  int c = 1;
+  for (; c + 16 <= width; c += 16) {
+    const uint8x16_t same = vceqq_u8(vld1q_u8(labels + c), vld1q_u8(labels + c - 1));
+    // Four bits a pixel: NEON has no mask of one bit a byte.
+    const uint8x8_t narrow = vshrn_n_u16(vreinterpretq_u16_u8(vmvnq_u8(same)), 4);
+    std::uint64_t changed = vget_lane_u64(vreinterpret_u64_u8(narrow), 0) & 0x1111111111111111u;
+    for (; changed != 0; changed &= changed - 1) {
+      const int at = c + __builtin_ctzll(changed) / 4;
+      change(at, labels[at]);
+    }
+  }
+  for (; c < width; ++c)
+    if (labels[c] != labels[c - 1]) change(c, labels[c]);
+  if (width > 0 && label != 0) change(width, 0);
+  return count;
+}
+
+int labels_of(const KernelTable& table, const std::uint8_t* claims, const YuvRow& row, int width, std::uint8_t* labels,
+              const RowRuns* runs) {
   const uint8x16x4_t bright[4] = {table64(table.bright.data()), table64(table.bright.data() + 64),
                                   table64(table.bright.data() + 128), table64(table.bright.data() + 192)};
   const uint8x16_t label_of_rank = vld1q_u8(table.label_of_rank.data());
@@ -90,34 +117,8 @@ void labels_of(const KernelTable& table, const std::uint8_t* claims, const YuvRo
     vst1q_u8(labels + c + 16, label(vzip2q_u8(pairs, pairs), y1));
   }
   const YuvRow rest{row.y + c * row.y_step, row.u, row.v, row.y_step, row.chroma_step};
-  plain_color_kernel.labels(table, claims + c / 2, rest, width - c, labels + c);
-}
-
-int runs_of(const std::uint8_t* labels, int width, const RowRuns& runs) {
-  int count = 0;
-  std::uint8_t label = 0;  // of the run at work
-  const auto change = [&](int c, std::uint8_t to) {
-    runs.end[count] = static_cast<std::uint16_t>(c);
-    count += label != 0;
-    runs.begin[count] = static_cast<std::uint16_t>(c);
-    runs.label[count] = label = to;
-  };
-  if (width > 0 && labels[0] != 0) change(0, labels[0]);
-  int c = 1;
-  for (; c + 16 <= width; c += 16) {
-    const uint8x16_t same = vceqq_u8(vld1q_u8(labels + c), vld1q_u8(labels + c - 1));
-    // Four bits a pixel: NEON has no mask of one bit a byte.
-    const uint8x8_t narrow = vshrn_n_u16(vreinterpretq_u16_u8(vmvnq_u8(same)), 4);
-    std::uint64_t changed = vget_lane_u64(vreinterpret_u64_u8(narrow), 0) & 0x1111111111111111u;
-    for (; changed != 0; changed &= changed - 1) {
-      const int at = c + __builtin_ctzll(changed) / 4;
-      change(at, labels[at]);
-    }
-  }
-  for (; c < width; ++c)
-    if (labels[c] != labels[c - 1]) change(c, labels[c]);
-  if (width > 0 && label != 0) change(width, 0);
-  return count;
+  plain_color_kernel.labels(table, claims + c / 2, rest, width - c, labels + c, nullptr);
+  return runs == nullptr ? 0 : runs_of(labels, width, *runs);
 }
 
 /// The block of 16 bytes, of which those from `width` on are 0.
@@ -160,9 +161,14 @@ void over_nine(const ThreeRows& rows, int width, std::uint8_t* labels) {
   }
 }
 
+int dilate_rows(const ThreeRows& rows, int width, std::uint8_t* labels, const RowRuns& runs) {
+  over_nine<Dilate>(rows, width, labels);
+  return runs_of(labels, width, runs);
+}
+
 }  // namespace
 
-constinit const ColorKernel neon_color_kernel{claims_of, labels_of, runs_of, over_nine<Erode>, over_nine<Dilate>};
+constinit const ColorKernel neon_color_kernel{claims_of, labels_of, over_nine<Erode>, dilate_rows};
 
 }  // namespace tassilo
 

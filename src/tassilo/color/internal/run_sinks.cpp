@@ -46,16 +46,15 @@ void RunSinks::make_room(std::size_t k) {
   limit_of_[k] = runs_[k].data() + runs_[k].size() - most_runs(width_);
 }
 
-void RunSinks::add_row(const ColorKernel& kernel, int r, const std::uint8_t* labels) {
-  const int count = kernel.runs(labels, width_, {begin_.data(), end_.data(), label_.data()});
+void RunSinks::add_row(int r, int count) {
   for (std::size_t k = 0; k < runs_.size(); ++k)
     if (end_of_[k] > limit_of_[k]) make_room(k);
-  std::array<PixelRun*, kColorClassCount> end = end_of_;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-    PixelRun*& to = end[label_[i] - 1u];
-    write(to++, r, begin_[i], end_[i]);
+  const RowRuns runs = row_runs();
+  for (int i = 0; i < count; ++i) {
+    PixelRun*& end = end_of_[runs.label[i] - 1u];
+    PixelRun* const to = end++;
+    write(to, r, runs.begin[i], runs.end[i]);
   }
-  end_of_ = end;
 }
 
 void RunSinks::finish(Segmentation& segmentation) && {

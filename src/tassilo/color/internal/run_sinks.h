@@ -17,8 +17,10 @@ class RunSinks {
   /// For rows of segmentation.width pixels; the regions it has say how many runs to expect.
   explicit RunSinks(const Segmentation& segmentation);
 
-  /// The runs of row r.
-  void add_row(const ColorKernel& kernel, int r, const std::uint8_t* labels);
+  /// Where a kernel writes the runs of a row, for `add_row`.
+  RowRuns row_runs() { return {begin_.data(), end_.data(), label_.data()}; }
+  /// The first `count` runs there are those of row r.
+  void add_row(int r, int count);
   /// Puts the regions in place; their memory is used again.
   void finish(Segmentation& segmentation) &&;
 
@@ -30,7 +32,7 @@ class RunSinks {
   std::array<RecycledBuffer<PixelRun>, kColorClassCount> runs_;
   std::array<PixelRun*, kColorClassCount> end_of_{};    ///< Behind the last run.
   std::array<PixelRun*, kColorClassCount> limit_of_{};  ///< Up to here there is room for the runs of a row.
-  RecycledBuffer<std::uint16_t> begin_, end_;  ///< Of the row at work.
+  RecycledBuffer<std::uint16_t> begin_, end_;           ///< Of the row at work.
   RecycledBuffer<std::uint8_t> label_;
 };
 

@@ -1,0 +1,30 @@
+#include "tassilo/region/internal/plane_kernel.h"
+
+#include "tassilo/region/internal/plane_loops.h"
+
+namespace tassilo {
+
+namespace {
+
+TASSILO_PLANE_JOINS()
+
+std::size_t changes(std::uint32_t* at, const std::uint64_t* b, std::size_t words) { return find_changes(at, b, words); }
+
+}  // namespace
+
+constinit const PlaneKernel plain_plane_kernel{join_or, join_and, triple_or, triple_and, move, changes};
+
+const PlaneKernel& plane_kernel(Kernel kernel) {
+  switch (kernel) {
+#if defined(__x86_64__)
+    case Kernel::avx512:
+      return avx512_plane_kernel;
+    case Kernel::avx2:
+      return avx2_plane_kernel;
+#endif
+    default:  // on aarch64 the plain one is made of NEON already
+      return plain_plane_kernel;
+  }
+}
+
+}  // namespace tassilo

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "tassilo/base/kernel.h"
+
+namespace tassilo {
+
+/// The inner loops over bit planes. All kernels give the same words.
+///
+/// A plane is one string of bits; `shift` moves it towards higher places, or, where negative, lower ones. A loop reads
+/// as far beyond both ends of `b` as the shift reaches, and one word more; `to` must not overlap `a` or `b`.
+struct PlaneKernel {
+  /// to = a | (b shifted), `words` words.
+  void (*join_or)(std::uint64_t* to, const std::uint64_t* a, const std::uint64_t* b, std::size_t words,
+                  std::ptrdiff_t shift);
+  /// to = a & (b shifted).
+  void (*join_and)(std::uint64_t* to, const std::uint64_t* a, const std::uint64_t* b, std::size_t words,
+                   std::ptrdiff_t shift);
+  /// to = b | (b shifted) | (b shifted twice as far): what elements of three columns or rows need, in one go.
+  void (*triple_or)(std::uint64_t* to, const std::uint64_t* b, std::size_t words, std::ptrdiff_t shift);
+  /// to = b & (b shifted) & (b shifted twice as far).
+  void (*triple_and)(std::uint64_t* to, const std::uint64_t* b, std::size_t words, std::ptrdiff_t shift);
+  /// to = b shifted.
+  void (*move)(std::uint64_t* to, const std::uint64_t* b, std::size_t words, std::ptrdiff_t shift);
+  /// Numbers of the bits that differ from the one before, by rising number, to `at`, which has room for 64 a word. The
+  /// word before `b` is read, too. Returns how many there are.
+  std::size_t (*changes)(std::uint32_t* at, const std::uint64_t* b, std::size_t words);
+};
+
+/// The loops for a kernel.
+const PlaneKernel& plane_kernel(Kernel kernel);
+
+extern const PlaneKernel plain_plane_kernel;
+#if defined(__x86_64__)
+extern const PlaneKernel avx2_plane_kernel;
+extern const PlaneKernel avx512_plane_kernel;
+#endif
+
+}  // namespace tassilo
