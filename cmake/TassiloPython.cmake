@@ -22,7 +22,7 @@ if(NOT python_reason)
   if(failed)
     set(python_reason "numpy and pytest are not installed; tools/install_deps.sh installs them")
   elseif(TASSILO_TESTS)
-    foreach(test region region_features image color vision limits package)
+    foreach(test region region_features contour image color vision limits package)
       add_test(NAME python.${test} COMMAND ${CMAKE_COMMAND} -E env PYTHONPATH=${PROJECT_BINARY_DIR}/python
         PYTHONDONTWRITEBYTECODE=1 TASSILO_PROGRAM=$<TARGET_FILE:tassilo>
         ${Python_EXECUTABLE} -m pytest -q -p no:cacheprovider python/tests/test_${test}.py

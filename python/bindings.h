@@ -30,6 +30,7 @@ using namespace py::literals;
 
 void bind_region(py::module_& module);
 void bind_features(py::module_& module);
+void bind_contour(py::module_& module);
 void bind_image(py::module_& module);
 void bind_color(py::module_& module);
 void bind_camera(py::module_& module);

@@ -22,6 +22,7 @@ PYBIND11_MODULE(_tassilo, module) {
   bind_region(module);
   bind_features(module);
   bind_image(module);
+  bind_contour(module);
   bind_color(module);
   bind_camera(module);
   bind_vision(module);

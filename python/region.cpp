@@ -8,6 +8,7 @@
 
 #include "bindings.h"
 #include "region_checks.h"
+#include "tassilo/region/affine.h"
 #include "tassilo/region/algebra.h"
 #include "tassilo/region/elements.h"
 #include "tassilo/region/fill.h"
@@ -16,8 +17,11 @@
 #include "tassilo/region/outline.h"
 #include "tassilo/region/partition.h"
 #include "tassilo/region/raster.h"
+#include "tassilo/region/relation.h"
 #include "tassilo/region/remove_noise.h"
 #include "tassilo/region/residue.h"
+#include "tassilo/region/shapes.h"
+#include "tassilo/region/skeleton.h"
 #include "tassilo/region/transform.h"
 
 // To add an operator, one statement in bind_operators (or in region_features.cpp), in the order of docs/regions.md:
@@ -159,6 +163,34 @@ void check_zoom(const PixelBox& box, double columns, double rows) {
     refuse("box of the region", "is " + text_of(box) + ", must stay within -32768 .. 32767 when zoomed");
 }
 
+AffineMap map_of(const ArrayLike& argument) {
+  const py::array_t<double, py::array::c_style | py::array::forcecast> m(argument.array);
+  if (m.ndim() != 2 || m.shape(0) != 2 || m.shape(1) != 3) refuse("matrix", "is " + shown(m) + ", must be (2, 3)");
+  return {m.at(0, 0), m.at(0, 1), m.at(0, 2), m.at(1, 0), m.at(1, 1), m.at(1, 2)};
+}
+
+/// Pixels are squares: a box reaches half a pixel beyond its centres.
+void check_mapped(const PixelBox& box, const AffineMap& map) {
+  if (box.empty()) return;
+  for (const double x : {box.x0 - .5, box.x1 - .5})
+    for (const double y : {box.y0 - .5, box.y1 - .5}) {
+      const PixelPoint corner = map * PixelPoint{x, y};
+      if (!(std::max(std::abs(corner.x), std::abs(corner.y)) < kHigh - 1))
+        refuse("mapped region", "reaches (" + std::to_string(corner.x) + ", " + std::to_string(corner.y) +
+                                    "), must stay within -32766 .. 32766");
+    }
+}
+
+void check_angle(double angle) {
+  if (!std::isfinite(angle)) refuse("phi", "is " + std::to_string(angle) + ", must be finite");
+}
+
+void check_shape(PixelPoint center, double length, double width) {
+  if (!(length >= 0 && width >= 0)) refuse("size", "is " + std::to_string(std::min(length, width)) + ", must be >= 0");
+  const double reach = std::max(std::abs(center.x), std::abs(center.y)) + std::hypot(length, width);
+  if (!(reach < kHigh - 1)) refuse("shape", "reaches " + std::to_string(reach) + ", must stay within -32766 .. 32766");
+}
+
 void check_reflected(const Region& region) {
   const PixelBox box = bounding_box(region);
   check_box("box of the reflected region", {1 - box.x1, 1 - box.y1, 1 - box.x0, 1 - box.y0});
@@ -231,6 +263,16 @@ void bind_operators(py::module_& module) {
       "Pixel (column, row) goes to (row, column).", "region"_a);
   def(module, "reflected", &reflected, &check_reflected, "Pixel (column, row) goes to (-column, -row).", "region"_a);
 
+  // Relations: relation.h
+  def(module, "common_area", &common_area, kAnything, "Number of pixels in both.", "a"_a, "b"_a);
+  def(module, "overlaps", &overlaps, kAnything, "Whether a pixel is in both.", "a"_a, "b"_a);
+  def(module, "is_subset", &is_subset, kAnything, "Whether every pixel of `inner` is in `outer`.", "inner"_a,
+      "outer"_a);
+  def(module, "hamming_distance", &hamming_distance, kAnything, "Number of pixels in exactly one.", "a"_a, "b"_a);
+  def(module, "intersection_over_union",
+      static_cast<double (*)(const Region&, const Region&)>(&intersection_over_union), kAnything,
+      "Pixels in both over pixels in any, 0 to 1.", "a"_a, "b"_a);
+
   // Transforms: transform.h, partition.h
   def(
       module, "mirrored_left_right", &mirrored_left_right,
@@ -265,6 +307,52 @@ void bind_operators(py::module_& module) {
         return partition_into_rectangles(region, {.width = width, .height = height});
       },
       "The region cut along a grid of cells of about this size.", "region"_a, "width"_a, "height"_a);
+  module.def(
+      "mapped",
+      [](const Region& region, const ArrayLike& matrix) {
+        const AffineMap map = map_of(matrix);
+        check_mapped(bounding_box(region), map);
+        py::gil_scoped_release unlocked;
+        return mapped(region, map);
+      },
+      "The region moved by an affine map, a (2, 3) array: column and row of a pixel, then 1.", "region"_a, "matrix"_a);
+  module.def(
+      "rotation_about",
+      [](double column, double row, double angle) {
+        for (const double value : {column, row, angle})
+          if (!std::isfinite(value)) refuse("rotation", "has " + std::to_string(value) + ", must be finite");
+        const AffineMap m = rotation_about({column, row}, angle);
+        return array_of(std::vector<double>{m.xx, m.xy, m.x0, m.yx, m.yy, m.y0}, {2, 3});
+      },
+      "The map that turns about a point, counter-clockwise on the screen [rad]; see mapped.", "column"_a, "row"_a,
+      "angle"_a);
+
+  // Shapes: shapes.h
+  module.def(
+      "circle_region",
+      [](double column, double row, double radius) {
+        check_shape({column, row}, radius, 0);
+        return circle_region({{column, row}, radius});
+      },
+      "Pixels whose centres lie in a circle or on it.", "column"_a, "row"_a, "radius"_a);
+  module.def(
+      "ellipse_region",
+      [](double column, double row, double ra, double rb, double phi) {
+        check_shape({column, row}, ra, rb);
+        check_angle(phi);
+        return ellipse_region({column, row}, {.ra = ra, .rb = rb, .phi = phi});
+      },
+      "Pixels whose centres lie in an ellipse or on it.", "column"_a, "row"_a, "ra"_a, "rb"_a, "phi"_a = 0.0);
+  module.def(
+      "rectangle_region",
+      [](double column, double row, double half_length, double half_width, double phi) {
+        check_shape({column, row}, half_length, half_width);
+        check_angle(phi);
+        return rectangle_region(
+            {.center = {column, row}, .half_length = half_length, .half_width = half_width, .phi = phi});
+      },
+      "Pixels whose centres lie in a rectangle at any angle or on it.", "column"_a, "row"_a, "half_length"_a,
+      "half_width"_a, "phi"_a = 0.0);
 
   // Morphology: morphology.h
   def(
@@ -331,6 +419,8 @@ void bind_operators(py::module_& module) {
       },
       "Pixels that have a neighbor in the region, of 'n_4' by edges, 'n_8' by corners, 'n_48' by either.", "region"_a,
       "neighbors"_a = "n_48");
+
+  def(module, "skeleton", &skeleton, kAnything, "The middle lines of a region, one pixel wide.", "region"_a);
 
   // Components and holes: components.h, fill.h
   def(module, "components", &components, kAnything, "The connected parts, in the order of their first runs.",

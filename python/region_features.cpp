@@ -14,6 +14,8 @@
 #include "tassilo/region/feret.h"
 #include "tassilo/region/gray.h"
 #include "tassilo/region/inscribed.h"
+#include "tassilo/region/morphology.h"
+#include "tassilo/region/roundness.h"
 #include "tassilo/region/select.h"
 
 // What is measured on regions; how to add something stands at the top of region.cpp.
@@ -83,9 +85,13 @@ void check_inside(const Region& region, const PixelBox& window) {
 
 void check_inner_circle(const Region& region) { check_inside(region, bounding_box(region)); }
 
+/// Its boundary is found by an erosion with the four neighbors.
+void check_roundness(const Region& region) { check_element<1>(region, rectangle(3, 3)); }
+
 void check_feature(const Region& region, Feature feature) {
   if (feature == Feature::rectangularity) check_rectangularity(region);
   if (feature == Feature::inner_radius) check_inner_circle(region);
+  if (feature >= Feature::roundness && feature <= Feature::num_sides) check_roundness(region);
 }
 
 Feature feature_of(const std::string& name) {
@@ -229,6 +235,15 @@ void bind_single(py::module_& module) {
       "foreground"_a = Connectivity::eight);
   def(module, "hole_count", &hole_count, kAnything, "Number of holes.", "region"_a,
       "foreground"_a = Connectivity::eight);
+  module.def(
+      "roundness",
+      [](const Region& region) {
+        check_roundness(region);
+        const Roundness r = roundness(region);
+        return py::dict("distance"_a = r.distance, "deviation"_a = r.deviation, "roundness"_a = r.roundness,
+                        "sides"_a = r.sides);
+      },
+      "How round a region is: distance of the boundary from the centre, deviation, roundness, sides.", "region"_a);
   module.def(
       "convex_hull", [](const Region& region) { return array_of_points(convex_hull(region)); },
       "(N, 2) corners (column, row) of the hull of the pixel centres, clockwise on the screen.", "region"_a);

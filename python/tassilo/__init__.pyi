@@ -81,6 +81,21 @@ def transposed(region: Region) -> Region:
 def reflected(region: Region) -> Region:
     """Pixel (column, row) goes to (-column, -row)."""
 
+def common_area(a: Region, b: Region) -> int:
+    """Number of pixels in both."""
+
+def overlaps(a: Region, b: Region) -> bool:
+    """Whether a pixel is in both."""
+
+def is_subset(inner: Region, outer: Region) -> bool:
+    """Whether every pixel of `inner` is in `outer`."""
+
+def hamming_distance(a: Region, b: Region) -> int:
+    """Number of pixels in exactly one."""
+
+def intersection_over_union(a: Region, b: Region) -> float:
+    """Pixels in both over pixels in any, 0 to 1."""
+
 def mirrored_left_right(region: Region, about: float) -> Region:
     """Pixel (column, row) goes to (2 about - column, row); about is a multiple of .5."""
 
@@ -92,6 +107,21 @@ def zoomed(region: Region, columns: float, rows: float) -> Region:
 
 def partition_into_rectangles(region: Region, width: int, height: int) -> List[Region]:
     """The region cut along a grid of cells of about this size."""
+
+def mapped(region: Region, matrix: ArrayLike) -> Region:
+    """The region moved by an affine map, a (2, 3) array: column and row of a pixel, then 1."""
+
+def rotation_about(column: float, row: float, angle: float) -> NDArray[numpy.float64]:
+    """The map that turns about a point, counter-clockwise on the screen [rad]; see mapped."""
+
+def circle_region(column: float, row: float, radius: float) -> Region:
+    """Pixels whose centres lie in a circle or on it."""
+
+def ellipse_region(column: float, row: float, ra: float, rb: float, phi: float = 0.0) -> Region:
+    """Pixels whose centres lie in an ellipse or on it."""
+
+def rectangle_region(column: float, row: float, half_length: float, half_width: float, phi: float = 0.0) -> Region:
+    """Pixels whose centres lie in a rectangle at any angle or on it."""
 
 def rectangle(width: int, height: int) -> Region:
     """Centred element of width x height pixels."""
@@ -137,6 +167,9 @@ def outer_boundary(region: Region, neighbors: Literal[4, 8] = 4) -> Region:
 
 def remove_noise(region: Region, neighbors: str = 'n_48') -> Region:
     """Pixels that have a neighbor in the region, of 'n_4' by edges, 'n_8' by corners, 'n_48' by either."""
+
+def skeleton(region: Region) -> Region:
+    """The middle lines of a region, one pixel wide."""
 
 def components(region: Region, connectivity: Literal[4, 8] = 8) -> List[Region]:
     """The connected parts, in the order of their first runs."""
@@ -212,6 +245,9 @@ def euler_number(region: Region, foreground: Literal[4, 8] = 8) -> int:
 
 def hole_count(region: Region, foreground: Literal[4, 8] = 8) -> int:
     """Number of holes."""
+
+def roundness(region: Region) -> Dict[str, Any]:
+    """How round a region is: distance of the boundary from the centre, deviation, roundness, sides."""
 
 def convex_hull(region: Region) -> NDArray[numpy.float64]:
     """(N, 2) corners (column, row) of the hull of the pixel centres, clockwise on the screen."""
@@ -351,6 +387,15 @@ def read_png(path: Union[str, os.PathLike[str]]) -> NDArray[numpy.uint8]:
 
 def write_png(path: Union[str, os.PathLike[str]], image: NDArray[Any]) -> None:
     """Writes (height, width) gray values or (height, width, 3) of R, G, B."""
+
+def boundary_contours(region: Region) -> List[Any]:
+    """All borders of a region through its border pixels, one step a point: (points, is_hole), points (N, 2) of column, row; all are closed."""
+
+def skeleton_contours(skeleton: Region, min_points: int = 1) -> Dict[str, Any]:
+    """A skeleton taken apart: contours (points, closed, from and to: the junctions at its ends or -1), junctions (column, row, pixels), ends (N, 2)."""
+
+def sub_pixel_edges(frame: Frame, region: Region, filter_size_px: int = 5, low: float = 4.0, high: float = 8.0, min_points: int = 5) -> List[Tuple[NDArray[numpy.float64], bool]]:
+    """Edges of a frame's brightness inside a region: (points, closed), points (N, 2) of column, row between pixels, the brighter side to the right; filter_size_px 3, 5 or 7, low and high [gray levels / px]."""
 
 class ColorTable:
     """Which colors are which class; never changed.

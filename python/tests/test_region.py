@@ -199,3 +199,41 @@ def test_outlines_come_back():
             assert sum(is_hole for _, is_hole in lines) == tassilo.hole_count(region, foreground)
     (corners, is_hole), = tassilo.center_outlines(Region.from_box((1, 2, 5, 6)))
     assert not is_hole and sorted(map(tuple, corners)) == [(1, 2), (1, 5), (4, 2), (4, 5)]
+
+
+def test_relations_are_those_of_sets():
+    for seed in range(5):
+        a, b = Region.from_mask(random_mask(seed)), Region.from_mask(random_mask(seed + 50))
+        assert tassilo.common_area(a, b) == len(a & b) and tassilo.hamming_distance(a, b) == len(a ^ b)
+        assert tassilo.overlaps(a, b) == bool(a & b) and tassilo.is_subset(a & b, a) and not tassilo.is_subset(a, a & b)
+        assert tassilo.intersection_over_union(a, b) == pytest.approx(len(a & b) / len(a | b))
+
+
+def test_maps_move_regions():
+    region = Region.from_mask(random_mask(2))
+    assert tassilo.mapped(region, [[1, 0, 4], [0, 1, -3]]) == tassilo.translated(region, 4, -3)
+    turn = tassilo.rotation_about(0, 0, np.pi / 2)
+    assert turn == pytest.approx(np.array([[0, 1, 0], [-1, 0, 0]]))
+    assert tassilo.mapped(region, turn.round()) == tassilo.mirrored_top_bottom(tassilo.transposed(region), 0)
+    for bad in ([[1, 0], [0, 1]], [[1e9, 0, 0], [0, 1, 0]], [[1, 0, float("nan")], [0, 1, 0]]):
+        with pytest.raises(ValueError, match="must"):
+            tassilo.mapped(region, bad)
+
+
+def test_shapes_anywhere():
+    rows, columns = np.indices((40, 50))
+    assert tassilo.circle_region(20, 15, 7.5) == Region.from_mask((columns - 20) ** 2 + (rows - 15) ** 2 <= 7.5**2)
+    assert tassilo.ellipse_region(20, 15, 9, 9, 1) == tassilo.circle_region(20, 15, 9)
+    assert tassilo.rectangle_region(20, 15, 5, 2) == Region.from_box((15, 13, 26, 18))
+    for call in (lambda: tassilo.circle_region(32760, 0, 9), lambda: tassilo.circle_region(0, 0, -1),
+                 lambda: tassilo.ellipse_region(0, 0, 1, float("nan")), lambda: tassilo.rectangle_region(0, 0, 1, 1, float("inf"))):
+        with pytest.raises(ValueError, match="must"):
+            call()
+
+
+def test_skeletons():
+    region = tassilo.closing(Region.from_mask(random_mask(9, (60, 80))), tassilo.disc(1))
+    middle = tassilo.skeleton(region)
+    assert middle <= region and tassilo.skeleton(middle) == middle
+    assert len(tassilo.components(middle)) == len(tassilo.components(region))
+    assert tassilo.hole_count(middle) == tassilo.hole_count(region)

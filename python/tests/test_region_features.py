@@ -93,6 +93,7 @@ def test_single_features():
     assert tassilo.contour_length(box) == 22 and tassilo.compactness(box) == 1
     assert tassilo.convex_hull(Region()).shape == (0, 2)
     assert abs(tassilo.orientation(box)) < 1e-9
+    assert tassilo.roundness(tassilo.disc(30))["roundness"] > 0.95
 
 
 def test_shapes_around_and_inside():
