@@ -1,6 +1,7 @@
 # cmake -P: the example, and a user of all components, build and run against an installed copy.
 #   MODE=installed  install the build that runs this test, everything in it
 #   MODE=core_only  configure, build and install the core alone, with every optional dependency hidden
+# PYTHON, PYTHON_DIR: the interpreter the build made a package for, and where below the prefix that is; empty: none.
 # SOURCE, BUILD: of the project; WORK: a folder of this test; GENERATOR, COMPILER, LAUNCHER, FLAGS: as the project was built.
 cmake_minimum_required(VERSION 3.25)
 
@@ -53,6 +54,15 @@ endfunction()
 build_and_run(examples/segment_an_image segment_an_image "red: area 316 px")
 if(MODE STREQUAL installed)
   build_and_run(tests/package package_user "msl98 is 8.22 m long\n.*no such file.mkv")
+  if(PYTHON)
+    # Shipped files are found beside the installed module, not only in the source tree.
+    file(COPY_FILE ${SOURCE}/config/fields/msl98.yaml ${prefix}/share/tassilo/config/fields/moved.yaml)
+    run("import the installed Python package" ${CMAKE_COMMAND} -E env PYTHONPATH=${prefix}/${PYTHON_DIR} ${PYTHON} -c
+      "import tassilo as t\nprint(t.__file__, t.opening(t.Region.from_box((0, 0, 9, 9)), t.disc(3.5)), t.Field.load('moved'))")
+    if(NOT output MATCHES "^${prefix}/.*Region: 69 px.*Field: moved")
+      message(FATAL_ERROR "the installed Python package does not say what it must: ${output}")
+    endif()
+  endif()
   if(EXISTS ${prefix}/bin/tassilo)
     run("run the installed program" ${prefix}/bin/tassilo --version)
   endif()

@@ -11,7 +11,7 @@ import subprocess
 import sys
 
 VERSION = 14  # Debian 12; another version formats differently
-FOLDERS = ["src", "tests", "bench", "fuzz", "examples"]
+FOLDERS = ["src", "tests", "bench", "fuzz", "examples", "python"]
 SKIP = 77
 
 

@@ -30,6 +30,7 @@ packages=(
   libyaml-cpp-dev libpng-dev libjpeg-dev nlohmann-json3-dev libcli11-dev libfmt-dev libcairo2-dev
   libgtest-dev libgmock-dev libbenchmark-dev
   clang-format python3 python3-numpy python3-jsonschema ffmpeg
+  pybind11-dev python3-dev python3-pytest
 )
 # imgproc and calib3d alone: the whole libopencv-dev is twice as large.
 if [ "$references" = 1 ]; then packages+=(clang libopencv-imgproc-dev libopencv-calib3d-dev libleptonica-dev); fi

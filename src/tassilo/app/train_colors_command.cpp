@@ -1,29 +1,16 @@
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
-#include <map>
 #include <memory>
-#include <set>
+#include <optional>
 #include <string>
-#include <vector>
 
 #include "tassilo/app/commands.h"
+#include "tassilo/app/training.h"
 #include "tassilo/app/written_files.h"
 #include "tassilo/base/error.h"
-#include "tassilo/color/quality.h"
-#include "tassilo/color/train.h"
-#include "tassilo/files/colors_file.h"
-#include "tassilo/files/png.h"
-#include "tassilo/files/samples_file.h"
-#include "tassilo/region/algebra.h"
-#include "tassilo/region/morphology.h"
-#include "tassilo/region/raster.h"
-#include "tassilo/source/frame_source.h"
 
 namespace tassilo {
 namespace {
@@ -37,118 +24,8 @@ struct TrainArguments {
   bool quiet = false;
 };
 
-/// Samples read, with the range of their images.
-struct LoadedSamples {
-  std::vector<ColorSample> samples;
-  int images = 0;                   ///< That have samples; a frame of a video is an image.
-  std::vector<NamedFile> files;     ///< All that were read, the list of samples among them.
-  std::optional<ColorRange> range;  ///< Nothing when there is no sample.
-};
-
 void warn(const std::string& what, const std::string& reason) {
   std::fputs(fmt::format("tassilo: warning: {}: {}\n", what, reason).c_str(), stderr);
-}
-
-/// Does `read`; what fails is told with the place in the samples file that asked for it.
-template <class Read>
-auto read_at(const std::string& place, Read read) {
-  try {
-    return read();
-  } catch (const Error& error) {
-    throw Error(place, error.what());
-  }
-}
-
-Region region_of(const TrainingSample& sample, const FrameView& frame, const std::string& place) {
-  if (const auto* box = std::get_if<PixelBox>(&sample.shape)) return Region::from_box(*box);
-  if (const auto* polygon = std::get_if<std::vector<PixelPoint>>(&sample.shape))
-    return region_from_polygon(*polygon, {-frame.width(), -frame.height(), 2 * frame.width(), 2 * frame.height()});
-  const auto& mask = std::get<SampleMask>(sample.shape);
-  const GrayImage pixels = read_at(place, [&] { return read_png_gray(mask.path); });
-  if (pixels.width != frame.width() || pixels.height != frame.height())
-    throw Error(place, fmt::format("mask {} is {}x{}, its image is {}x{}", mask.path.string(), pixels.width,
-                                   pixels.height, frame.width(), frame.height()));
-  const Region region = region_where(ByteView{pixels.pixels.data(), pixels.width, pixels.height, pixels.width},
-                                     [&](int value) { return value == mask.value; });
-  // The rim of a mask is where two colors mix.
-  return erosion(region, rectangle(3, 3));
-}
-
-/// Warns of regions of different classes that share pixels: at least one of them was drawn wrong.
-void warn_of_overlap(const std::vector<std::pair<const TrainingSample*, Region>>& drawn, const std::string& file) {
-  for (std::size_t i = 0; i < drawn.size(); ++i)
-    for (std::size_t k = 0; k < i; ++k) {
-      if (drawn[i].first->color == drawn[k].first->color) continue;
-      if (intersection(bounding_box(drawn[i].second), bounding_box(drawn[k].second)).empty()) continue;
-      const auto shared = area(intersection(drawn[i].second, drawn[k].second));
-      if (shared > 0)
-        warn(fmt::format("{}:{}", file, drawn[i].first->line),
-             fmt::format("{} shares {} pixels with {} in line {}", to_string(drawn[i].first->color), shared,
-                         to_string(drawn[k].first->color), drawn[k].first->line));
-    }
-}
-
-/// The frames of one image or video that samples ask for, and the line that asks for the last of them.
-struct WantedFrames {
-  std::set<std::int64_t> indices;
-  int line = 0;
-};
-
-LoadedSamples load_samples(const std::string& file, ColorRange images_range) {
-  const std::vector<TrainingSample> list = read_samples(file);
-  if (list.empty()) throw Error(file, "holds no samples, must hold at least one");
-  std::map<fs::path, WantedFrames> wanted;
-  for (const TrainingSample& sample : list) {
-    WantedFrames& frames = wanted[sample.image];
-    if (frames.indices.empty() || sample.frame > *frames.indices.rbegin()) frames.line = sample.line;
-    frames.indices.insert(sample.frame);
-  }
-
-  LoadedSamples loaded;
-  loaded.files.push_back({"samples", file});
-  for (const TrainingSample& sample : list) {
-    loaded.files.push_back({"an image", sample.image.string()});
-    if (const auto* mask = std::get_if<SampleMask>(&sample.shape))
-      loaded.files.push_back({"a mask", mask->path.string()});
-  }
-  int group = 0;
-  for (const auto& [image, frames] : wanted) {
-    const std::vector<std::int64_t> indices(frames.indices.begin(), frames.indices.end());
-    const std::string place_of_last = fmt::format("{}:{}", file, frames.line);
-    SourceOptions options;
-    options.location = image.string();
-    options.images_range = images_range;
-    const std::vector<Frame> pictures = read_at(place_of_last, [&] { return read_frames(options, indices); });
-    for (std::size_t i = 0; i < pictures.size(); ++i, ++group) {
-      const Frame& frame = pictures[i];
-      if (loaded.range && *loaded.range != frame.range)
-        throw Error(place_of_last,
-                    fmt::format("{} has {} color range, images before it have {}; a table is for one range",
-                                image.string(), to_string(frame.range), to_string(*loaded.range)));
-      loaded.range = frame.range;
-      std::vector<std::pair<const TrainingSample*, Region>> drawn;
-      for (const TrainingSample& sample : list) {
-        if (sample.image != image || sample.frame != indices[i]) continue;
-        const std::string place = fmt::format("{}:{}", file, sample.line);
-        Region region = region_of(sample, frame.view, place);
-        const auto whole = area(region);
-        std::vector<YuvPixel> pixels = pixels_of(frame.view, region);
-        if (pixels.empty()) {
-          warn(place, fmt::format("{} has no pixel in the image ({}x{}); ignored", to_string(sample.color),
-                                  frame.view.width(), frame.view.height()));
-          continue;
-        }
-        if (static_cast<std::int64_t>(pixels.size()) < whole)
-          warn(place, fmt::format("{} leaves the image; {} of {} pixels are used", to_string(sample.color),
-                                  pixels.size(), whole));
-        loaded.samples.push_back({sample.color, group, std::move(pixels)});
-        drawn.emplace_back(&sample, std::move(region));
-      }
-      loaded.images += !drawn.empty();
-      warn_of_overlap(drawn, file);
-    }
-  }
-  return loaded;
 }
 
 std::string percent(const std::optional<double>& share) {
@@ -185,61 +62,21 @@ void print_quality(const ColorTable& table, const ColorQuality& quality, const s
   }
 }
 
-std::string today() {
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  std::tm local{};
-  localtime_r(&now, &local);
-  char text[16];
-  std::strftime(text, sizeof text, "%Y-%m-%d", &local);
-  return text;
-}
-
 int train_colors_command(const TrainArguments& arguments) {
   const ColorRange images_range = arguments.range == "full" ? ColorRange::full : ColorRange::limited;
-  const LoadedSamples loaded = load_samples(arguments.samples, images_range);
-  check_written_files(loaded.files,
+  const TrainingSet samples{arguments.samples, load_samples(arguments.samples, images_range, warn)};
+  check_written_files(samples.loaded.files,
                       std::array<NamedFile, 2>{
                           {{"--output", arguments.output},
                            {"the PNG of --output", fs::path(arguments.output).replace_extension(".png").string()}}});
-  if (loaded.samples.empty()) throw Error(arguments.samples, "has no sample with a pixel in its image");
-  if (std::ranges::all_of(loaded.samples, [](const ColorSample& s) { return s.color == ColorClass::no_color; }))
-    throw Error(arguments.samples, "has samples of no_color alone, must have some of a color");
-
-  ColorsFile file;
-  file.table = train_colors(loaded.samples, *loaded.range, arguments.options);
-  std::set<ColorClass> sampled;
-  for (const ColorSample& sample : loaded.samples) sampled.insert(sample.color);
-  for (const ColorClass color : sampled)
-    if (color != ColorClass::no_color &&
-        std::ranges::none_of(file.table.chroma, [&](ClassBits bits) { return (bits & class_bit(color)) != 0; }))
-      warn(std::string(to_string(color)), "its samples have no common color; the class stays empty");
-
-  ColorQuality quality;
-  std::string how;
-  if (!arguments.held_out.empty()) {
-    const LoadedSamples held_out = load_samples(arguments.held_out, images_range);
-    if (held_out.range && *held_out.range != *loaded.range)
-      throw Error(arguments.held_out, fmt::format("has images of {} range, the training images have {}",
-                                                  to_string(*held_out.range), to_string(*loaded.range)));
-    add_quality(quality, Classifier(file.table), held_out.samples);
-    how = "on " + arguments.held_out;
-  } else {
-    quality = cross_validate(loaded.samples, *loaded.range, arguments.options);
-    how = loaded.images > 1           ? "cross-validated: on images held out in turn"
-          : loaded.samples.size() > 1 ? "cross-validated: on samples of one image held out in turn"
-                                      : "not measured: needs a second sample of each color, better in another image";
-  }
-  file.trained_from = Provenance{};
-  file.trained_from->samples = arguments.samples;
-  file.trained_from->date = today();
-  file.trained_from->notes = how;
-  for (const ColorClass color : kColorClasses)
-    if (quality.pixels(color) > 0)
-      file.trained_from->quality[color] = {quality.precision(color), quality.recall(color)};
+  std::optional<TrainingSet> held_out;
+  if (!arguments.held_out.empty())
+    held_out = {arguments.held_out, load_samples(arguments.held_out, images_range, warn)};
+  const auto [file, quality] = train_colors_file(samples, held_out ? &*held_out : nullptr, arguments.options, warn);
   write_colors(arguments.output, file);
   if (!arguments.quiet) {
-    fmt::print("{} samples, {} range\n", loaded.samples.size(), to_string(*loaded.range));
-    print_quality(file.table, quality, how);
+    fmt::print("{} samples, {} range\n", samples.loaded.samples.size(), to_string(file.table.range));
+    print_quality(file.table, quality, file.trained_from->notes);
     fmt::print("\nwrote {}\n", arguments.output);
   }
   return 0;

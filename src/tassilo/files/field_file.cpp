@@ -1,5 +1,7 @@
 #include "tassilo/files/field_file.h"
 
+#include <dlfcn.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdlib>
@@ -130,6 +132,12 @@ std::vector<fs::path> config_folders() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   if (!error) folders.push_back(program.parent_path().parent_path() / "share/tassilo/config");
+  // A library or Python module knows its own place, PREFIX/lib/.../it.so, wherever the prefix was moved.
+  if (Dl_info code; dladdr(reinterpret_cast<void*>(&is_field_path), &code) != 0 && code.dli_fname != nullptr)
+    for (fs::path folder = code.dli_fname; folder.is_absolute() && folder != folder.root_path();) {
+      folder = folder.parent_path();
+      if (fs::exists(folder / "share/tassilo/config", error)) folders.push_back(folder / "share/tassilo/config");
+    }
   folders.emplace_back(TASSILO_INSTALLED_CONFIG);
   folders.emplace_back(TASSILO_SOURCE_CONFIG);
   return folders;

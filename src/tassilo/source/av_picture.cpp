@@ -10,6 +10,7 @@ extern "C" {
 #include <vector>
 
 #include "tassilo/base/error.h"
+#include "tassilo/image/bt601.h"
 #include "tassilo/source/internal/av_support.h"
 #include "tassilo/source/internal/frame_reader.h"
 
@@ -116,39 +117,6 @@ class ComponentReader {
 
 std::uint8_t to_byte(std::int64_t value) { return static_cast<std::uint8_t>(std::clamp<std::int64_t>(value, 0, 255)); }
 
-/// numerator / denominator, halves rounded up; denominator > 0.
-std::int64_t round_ratio(std::int64_t numerator, std::int64_t denominator) {
-  const std::int64_t twice = 2 * numerator + denominator;
-  const std::int64_t quotient = twice / (2 * denominator);
-  return twice % (2 * denominator) < 0 ? quotient - 1 : quotient;
-}
-
-/// BT.601 in exact integers from R, G, B in 0..largest: Y = .299 R + .587 G + .114 B, Cb = (B - Y) / 1.772,
-/// Cr = (R - Y) / 1.402, scaled to 8 bit; chroma is the mean of a pair's, or of the last column's alone.
-class Bt601 {
- public:
-  Bt601(ColorRange range, int largest)
-      : luma_offset_(range == ColorRange::full ? 0 : 16),
-        luma_scale_(range == ColorRange::full ? 255 : 219),
-        chroma_scale_(range == ColorRange::full ? 255 : 224),
-        largest_(largest) {}
-
-  struct Rgb {
-    std::int64_t r, g, b;
-  };
-  std::uint8_t y(Rgb c) const { return to_byte(luma_offset_ + round_ratio(luma_scale_ * luma(c), 1000 * largest_)); }
-  /// `sum` of `count` pixels.
-  std::uint8_t cb(Rgb sum, int count) const { return chroma(1000 * sum.b - luma(sum), 1772 * count); }
-  std::uint8_t cr(Rgb sum, int count) const { return chroma(1000 * sum.r - luma(sum), 1402 * count); }
-
- private:
-  static std::int64_t luma(Rgb c) { return 299 * c.r + 587 * c.g + 114 * c.b; }
-  std::uint8_t chroma(std::int64_t difference, std::int64_t divisor) const {
-    return to_byte(128 + round_ratio(chroma_scale_ * difference, divisor * largest_));
-  }
-  std::int64_t luma_offset_, luma_scale_, chroma_scale_, largest_;
-};
-
 Frame from_rgb(const AVFrame& picture, ColorRange range) {
   const ComponentReader reader(picture);
   const int width = picture.width;
@@ -171,21 +139,10 @@ Frame from_rgb(const AVFrame& picture, ColorRange range) {
       reader.read_color(1, r, green);
       reader.read_color(2, r, blue);
     }
-    std::uint8_t* y = buffer.planes[0] + r * buffer.strides[0];
-    std::uint8_t* u = buffer.planes[1] + r * buffer.strides[1];
-    std::uint8_t* v = buffer.planes[2] + r * buffer.strides[2];
-    for (int c = 0; c < width; c += 2) {
-      Bt601::Rgb sum{0, 0, 0};
-      const int end = std::min(c + 2, width);
-      for (int i = c; i < end; ++i) {
-        const auto at = static_cast<std::size_t>(i);
-        const Bt601::Rgb color{red[at], green[at], blue[at]};
-        y[i] = bt601.y(color);
-        sum = {sum.r + color.r, sum.g + color.g, sum.b + color.b};
-      }
-      u[c / 2] = bt601.cb(sum, end - c);
-      v[c / 2] = bt601.cr(sum, end - c);
-    }
+    fill_row_from_rgb(buffer, r, bt601, [&](int c) {
+      const auto at = static_cast<std::size_t>(c);
+      return RgbSum{red[at], green[at], blue[at]};
+    });
   }
   return std::move(buffer.frame);
 }

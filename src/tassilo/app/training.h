@@ -1,0 +1,48 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tassilo/app/written_files.h"
+#include "tassilo/color/quality.h"
+#include "tassilo/color/train.h"
+#include "tassilo/files/colors_file.h"
+
+namespace tassilo {
+
+/// Told of what is odd but no error: the thing, and what is odd about it.
+using Warn = std::function<void(const std::string& what, const std::string& reason)>;
+
+/// Samples read, with the range of their images.
+struct LoadedSamples {
+  std::vector<ColorSample> samples;
+  int images = 0;                   ///< That have samples; a frame of a video is an image.
+  std::vector<NamedFile> files;     ///< All that were read, the list of samples among them.
+  std::optional<ColorRange> range;  ///< Nothing when there is no sample.
+};
+
+/// Reads a samples file and the images it names; RGB images become BT.601 in `images_range`. Throws Error with the
+/// place in the file where a sample or an image is wrong, and when it holds no samples.
+LoadedSamples load_samples(const std::string& file, ColorRange images_range, const Warn& warn);
+
+/// A table and how good it is.
+struct TrainedColors {
+  ColorsFile file;
+  ColorQuality quality;
+};
+
+/// Samples and what messages and the provenance call them.
+struct TrainingSet {
+  std::string name;
+  LoadedSamples loaded;
+};
+
+/// Trains a table from what load_samples or someone else brought. Quality is measured on `held_out` where that is
+/// given, else by cross-validation, and is noted in the file's provenance with today's date. Throws Error naming
+/// `samples` when there is nothing to learn from, or the ranges differ.
+TrainedColors train_colors_file(const TrainingSet& samples, const TrainingSet* held_out, const TrainingOptions& options,
+                                const Warn& warn);
+
+}  // namespace tassilo
