@@ -47,6 +47,9 @@ THIRD_PARTY = {
     "web": ["boost/", *POSIX],
     "app": ["CLI/", "fmt/", "spdlog/", *POSIX],
 }
+# Instructions of one kind of machine: only in the sources of kernels, which are named after it.
+INTRINSICS = ["immintrin.h", "arm_neon.h"]
+KERNEL_SOURCE = re.compile(r"/internal/\w+_(avx2|avx512|neon)\.cpp$")
 TEST_ONLY = ["gtest/", "gmock/", "opencv2/", *POSIX]
 
 # Names of libraries that do I/O; a forward declaration in a public header would let them through without an include.
@@ -103,6 +106,8 @@ def third_party_faults(source):
         allowed.append("Eigen/")
     if is_test(source):
         allowed += TEST_ONLY
+    if KERNEL_SOURCE.search(source.path.as_posix()):
+        allowed += INTRINSICS
     for bracket, name in source.includes:
         if name.startswith("tassilo/"):
             continue
