@@ -110,7 +110,7 @@ double opencv_seconds(const Views& views) {
 void BM_Edges(benchmark::State& state) {
   const auto kernels = gradient_kernels();
   const auto index = static_cast<std::size_t>(state.range(1));
-  if (index >= kernels.size() || !kernels[index].supported()) {
+  if (index >= kernels.size() || !is_supported(kernels[index].kernel)) {
     state.SkipWithError("this machine does not have the kernel");
     return;
   }
@@ -159,7 +159,8 @@ void BM_Edges(benchmark::State& state) {
   state.counters["of_opencv"] = seconds / theirs;
 #endif
   const FrameView& view = views.frames[0].view;
-  state.SetLabel(std::to_string(view.width()) + "x" + std::to_string(view.height()) + " " + std::string(kernel.name));
+  state.SetLabel(std::to_string(view.width()) + "x" + std::to_string(view.height()) + " " +
+                 std::string(to_string(kernel.kernel)));
 }
 
 BENCHMARK(BM_Edges)

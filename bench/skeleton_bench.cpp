@@ -125,7 +125,7 @@ double leptonica_seconds(int source) {
 void BM_Skeleton(benchmark::State& state) {
   const auto kernels = thinning_kernels();
   const auto index = static_cast<std::size_t>(state.range(1));
-  if (index >= kernels.size() || !kernels[index].supported()) {
+  if (index >= kernels.size() || !is_supported(kernels[index].kernel)) {
     state.SkipWithError("this machine does not have the kernel");
     return;
   }
@@ -156,7 +156,8 @@ void BM_Skeleton(benchmark::State& state) {
   state.counters["leptonica_us"] = 1e6 * theirs;
   state.counters["x_leptonica"] = theirs / seconds;
 #endif
-  state.SetLabel(std::to_string(masks.width) + "x" + std::to_string(masks.height) + " " + std::string(kernel.name));
+  state.SetLabel(std::to_string(masks.width) + "x" + std::to_string(masks.height) + " " +
+                 std::string(to_string(kernel.kernel)));
 }
 
 BENCHMARK(BM_Skeleton)

@@ -23,8 +23,9 @@ struct Supported {
     if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2")) {
       add(Kernel::avx2);
       if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-          __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512vbmi") &&
-          __builtin_cpu_supports("avx512vbmi2") && __builtin_cpu_supports("avx512bitalg"))
+          __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
+          __builtin_cpu_supports("avx512vbmi") && __builtin_cpu_supports("avx512vbmi2") &&
+          __builtin_cpu_supports("avx512bitalg"))
         add(Kernel::avx512);
     }
 #endif
@@ -58,10 +59,12 @@ std::span<const Kernel> supported_kernels() {
   return std::span(supported.kernels).first(supported.count);
 }
 
+bool is_supported(Kernel kernel) { return std::ranges::count(supported_kernels(), kernel) == 1; }
+
 Kernel kernel_in_use() { return in_use().load(std::memory_order_relaxed); }
 
 void use_kernel(Kernel kernel) {
-  expects(std::ranges::count(supported_kernels(), kernel) == 1, "a kernel that this machine runs");
+  expects(is_supported(kernel), "a kernel that this machine runs");
   in_use().store(kernel, std::memory_order_relaxed);
 }
 

@@ -267,13 +267,6 @@ class Linker {
   RecycledVector<std::int32_t> first_of_row_;
 };
 
-GradientKernel fastest() {
-  GradientKernel best = gradient_kernels().front();
-  for (const GradientKernel& kernel : gradient_kernels())
-    if (kernel.supported()) best = kernel;
-  return best;
-}
-
 }  // namespace
 
 void EdgeOptions::check() const {
@@ -286,7 +279,7 @@ void EdgeOptions::check() const {
 
 RecycledVector<EdgePoint> edge_points(const GradientKernel& kernel, const FrameView& frame, const Region& region,
                                       const EdgeOptions& options) {
-  expects(kernel.supported(), "a kernel this machine can run");
+  expects(is_supported(kernel.kernel), "a kernel this machine can run");
   const Region inner = clipped(region, {1, 1, frame.width() - 1, frame.height() - 1});
   return PointFinder(kernel, frame, inner, options).points();
 }
@@ -302,7 +295,7 @@ RecycledVector<Contour> sub_pixel_edges_by(const GradientKernel& kernel, const F
 }
 
 RecycledVector<Contour> sub_pixel_edges(const FrameView& frame, const Region& region, const EdgeOptions& options) {
-  static const GradientKernel kernel = fastest();
+  static const GradientKernel kernel = version_in_use(gradient_kernels());
   return sub_pixel_edges_by(kernel, frame, region, options);
 }
 

@@ -249,17 +249,10 @@ Region region_of(const TiledRegion& tiled, std::size_t expected_runs) {
   return Region::from_sorted(std::move(runs));
 }
 
-ThinningKernel fastest() {
-  ThinningKernel best = thinning_kernels().front();
-  for (const ThinningKernel& kernel : thinning_kernels())
-    if (kernel.supported()) best = kernel;
-  return best;
-}
-
 }  // namespace
 
 Region skeleton_by(const ThinningKernel& kernel, const Region& region) {
-  expects(kernel.supported(), "a kernel this machine can run");
+  expects(is_supported(kernel.kernel), "a kernel this machine can run");
   if (region.empty()) return {};
   TiledRegion tiled = Tiler(region).tiled();
   Thinning(tiled, kernel).run();
@@ -267,7 +260,7 @@ Region skeleton_by(const ThinningKernel& kernel, const Region& region) {
 }
 
 Region skeleton(const Region& region) {
-  static const ThinningKernel kernel = fastest();
+  static const ThinningKernel kernel = version_in_use(thinning_kernels());
   return skeleton_by(kernel, region);
 }
 

@@ -149,8 +149,6 @@ void peaks_plain(const std::array<GradientRow, 3>& rows, std::int32_t least, std
                  std::span<std::uint32_t> to) {
   peaks(rows, least, columns, to);
 }
-bool everywhere() { return true; }
-
 #if defined(__x86_64__) && defined(__GNUC__)
 
 // The same words, compiled for wider registers.
@@ -162,7 +160,6 @@ bool everywhere() { return true; }
                                         std::span<const int> columns, std::span<std::uint32_t> to) {
   peaks(rows, least, columns, to);
 }
-bool has_avx2() { return __builtin_cpu_supports("avx2"); }
 
 [[gnu::target("avx512f,avx512bw,avx512vl,avx512dq,prefer-vector-width=512")]] void gradients_avx512(
     const BrightnessRows& rows, int reach, std::span<const int> columns, const GradientRow& to) {
@@ -173,18 +170,14 @@ bool has_avx2() { return __builtin_cpu_supports("avx2"); }
     std::span<std::uint32_t> to) {
   peaks(rows, least, columns, to);
 }
-bool has_avx512() {
-  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-         __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq");
-}
 
-constexpr std::array<GradientKernel, 3> kKernels{{{"plain", everywhere, gradients_plain, peaks_plain},
-                                                  {"avx2", has_avx2, gradients_avx2, peaks_avx2},
-                                                  {"avx512", has_avx512, gradients_avx512, peaks_avx512}}};
+constexpr std::array<GradientKernel, 3> kKernels{{{Kernel::plain, gradients_plain, peaks_plain},
+                                                  {Kernel::avx2, gradients_avx2, peaks_avx2},
+                                                  {Kernel::avx512, gradients_avx512, peaks_avx512}}};
 
 #else
 
-constexpr std::array<GradientKernel, 1> kKernels{{{"plain", everywhere, gradients_plain, peaks_plain}}};
+constexpr std::array<GradientKernel, 1> kKernels{{{Kernel::plain, gradients_plain, peaks_plain}}};
 
 #endif
 

@@ -4,7 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string_view>
+
+#include "tassilo/base/kernel.h"
 
 namespace tassilo {
 
@@ -36,8 +37,7 @@ struct BrightnessRows {
 /// Filters are binomial: smoothing (1/4)^reach (1 1)^(2 reach), a Gaussian of sigma sqrt(reach / 2), across the
 /// derivative (1 0 -1) (1 1)^(2 reach - 2).
 struct GradientKernel {
-  std::string_view name;
-  bool (*supported)();  ///< May this machine run it?
+  Kernel kernel;
   /// Gradients of the blocks at `columns`, of filters with `reach` 1 .. 3.
   void (*gradients)(const BrightnessRows& rows, int reach, std::span<const int> columns, const GradientRow& to);
   /// peaks[i] gets bit k when column columns[i] + k is a peak: not below `least` in the square, and a maximum of its
@@ -46,7 +46,7 @@ struct GradientKernel {
                 std::span<std::uint32_t> peaks);
 };
 
-/// [0] is the plain one, which runs everywhere; the last supported one is the fastest.
+/// Those of this build, of which the machine may not run all: the plain one first, the fastest last.
 std::span<const GradientKernel> gradient_kernels();
 
 }  // namespace tassilo

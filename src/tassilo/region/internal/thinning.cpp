@@ -68,8 +68,6 @@ void find_plain(std::span<const ThinningTile> tiles, std::span<const std::int32_
   find(tiles, active, step, found);
 }
 
-bool everywhere() { return true; }
-
 #if defined(__x86_64__) && defined(__GNUC__)
 
 // The same words, compiled for wider registers: the compiler turns the eight rows of a tile into one or two of them.
@@ -77,7 +75,6 @@ bool everywhere() { return true; }
                                        ThinningStep step, std::span<OwnRows> found) {
   find(tiles, active, step, found);
 }
-bool has_avx2() { return __builtin_cpu_supports("avx2"); }
 
 [[gnu::target("avx512f,avx512vl,prefer-vector-width=512")]] void find_avx512(std::span<const ThinningTile> tiles,
                                                                              std::span<const std::int32_t> active,
@@ -85,14 +82,13 @@ bool has_avx2() { return __builtin_cpu_supports("avx2"); }
                                                                              std::span<OwnRows> found) {
   find(tiles, active, step, found);
 }
-bool has_avx512() { return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl"); }
 
 constexpr std::array<ThinningKernel, 3> kKernels{
-    {{"plain", everywhere, find_plain}, {"avx2", has_avx2, find_avx2}, {"avx512", has_avx512, find_avx512}}};
+    {{Kernel::plain, find_plain}, {Kernel::avx2, find_avx2}, {Kernel::avx512, find_avx512}}};
 
 #else
 
-constexpr std::array<ThinningKernel, 1> kKernels{{{"plain", everywhere, find_plain}}};
+constexpr std::array<ThinningKernel, 1> kKernels{{{Kernel::plain, find_plain}}};
 
 #endif
 

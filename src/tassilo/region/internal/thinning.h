@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string_view>
 
+#include "tassilo/base/kernel.h"
 #include "tassilo/region/region.h"
 
 namespace tassilo {
@@ -36,14 +36,13 @@ enum class ThinningStep {
 
 /// One way to find the pixels of a step; all give the same.
 struct ThinningKernel {
-  std::string_view name;
-  bool (*supported)();  ///< May this machine run it?
+  Kernel kernel;
   /// found[i] becomes the step's pixels of tile active[i].
   void (*find)(std::span<const ThinningTile> tiles, std::span<const std::int32_t> active, ThinningStep step,
                std::span<OwnRows> found);
 };
 
-/// [0] is the plain one, which runs everywhere; the last supported one is the fastest.
+/// Those of this build, of which the machine may not run all: the plain one first, the fastest last.
 std::span<const ThinningKernel> thinning_kernels();
 
 /// What a kernel finds for ThinningStep::square in own row k of one tile.
