@@ -53,6 +53,15 @@ void BM_Segment(benchmark::State& state, Kernel kernel) {
     fast = segment(frame.view, frames.classifier, std::move(fast));
     expects(plain.labels == fast.labels && plain.regions == fast.regions, "a kernel equals the plain one");
   }
+  std::size_t runs = 0;
+  for (const Frame& frame : frames.frames) {
+    fast = segment(frame.view, frames.classifier, std::move(fast));
+    for (const Region& region : fast.regions) runs += region.runs().size();
+  }
+  const double runs_a_frame = static_cast<double>(runs) / static_cast<double>(frames.frames.size());
+  state.counters["runs"] = runs_a_frame;
+  state.counters["pixels"] = frames.width() * frames.height();
+  state.counters["region_bytes"] = runs_a_frame * sizeof(PixelRun);
   std::size_t next = 0;
   for (auto _ : state) {
     fast = segment(frames.next(next).view, frames.classifier, std::move(fast));

@@ -65,7 +65,7 @@ TASSILO_AVX2 void claims_of(const KernelTable& table, const YuvRow& row, int pai
   plain_color_kernel.claims(table, rest, pairs - k, claims + k);
 }
 
-TASSILO_AVX2 int runs_of(const std::uint8_t* labels, int width, const RowRuns& runs) {
+TASSILO_AVX2 int runs_of(const std::uint8_t* labels, int width, RowRuns runs) {
   int count = 0;
   std::uint8_t label = 0;  // of the run at work
   const auto change = [&](int c, std::uint8_t to) {
@@ -90,8 +90,9 @@ TASSILO_AVX2 int runs_of(const std::uint8_t* labels, int width, const RowRuns& r
   return count;
 }
 
-TASSILO_AVX2 int labels_of(const KernelTable& table, const std::uint8_t* claims, const YuvRow& row, int width,
+TASSILO_AVX2 int labels_of(const KernelTable& table, const std::uint8_t* claims, const YuvRow& of_row, int width,
                            std::uint8_t* labels, const RowRuns* runs) {
+  const YuvRow row = of_row;  // not to be looked up again after every store of bytes, which might change it
   const KernelTable::HalfBytes& halves = table.half_bytes;
   const __m256i whole = twice(halves.whole), first = twice(halves.first), last = twice(halves.last),
                 both = twice(halves.both), from = twice(halves.from), to = twice(halves.to);
@@ -160,7 +161,7 @@ struct Dilate {
 };
 
 template <class Operation>
-TASSILO_AVX2 void over_nine(const ThreeRows& rows, int width, std::uint8_t* labels) {
+TASSILO_AVX2 void over_nine(ThreeRows rows, int width, std::uint8_t* labels) {
   const auto column = [&](int c) TASSILO_AVX2 {
     if (c >= width) return _mm256_setzero_si256();
     return Operation::join(load_inside(rows.above, c, width), load_inside(rows.here, c, width),
@@ -182,6 +183,10 @@ TASSILO_AVX2 void over_nine(const ThreeRows& rows, int width, std::uint8_t* labe
   }
 }
 
+TASSILO_AVX2 void erode_rows(const ThreeRows& rows, int width, std::uint8_t* labels) {
+  over_nine<Erode>(rows, width, labels);
+}
+
 TASSILO_AVX2 int dilate_rows(const ThreeRows& rows, int width, std::uint8_t* labels, const RowRuns& runs) {
   over_nine<Dilate>(rows, width, labels);
   return runs_of(labels, width, runs);
@@ -189,7 +194,7 @@ TASSILO_AVX2 int dilate_rows(const ThreeRows& rows, int width, std::uint8_t* lab
 
 }  // namespace
 
-constinit const ColorKernel avx2_color_kernel{claims_of, labels_of, over_nine<Erode>, dilate_rows};
+constinit const ColorKernel avx2_color_kernel{claims_of, labels_of, erode_rows, dilate_rows};
 
 }  // namespace tassilo
 

@@ -102,12 +102,18 @@ TASSILO_AVX512 inline void claims_of_cells(const KernelTable& table, const Cells
   for (std::size_t i = 0; i < N; ++i) _mm512_storeu_si512(claims + 64 * i, found[i]);
 }
 
-TASSILO_AVX512 void claims_of(const KernelTable& table, const YuvRow& row, int pairs, std::uint8_t* claims) {
+TASSILO_AVX512 void claims_of(const KernelTable& table, const YuvRow& of_row, int pairs, std::uint8_t* claims) {
+  const YuvRow row = of_row;  // not to be looked up again after every store of bytes, which might change it
   if (!table.has_windows) {
     plain_color_kernel.claims(table, row, pairs, claims);
     return;
   }
   int k = 0;
+  if (row.chroma_step == 1) {
+    const std::uint8_t *u = row.u, *v = row.v;
+    for (; k + 128 <= pairs; k += 128)
+      claims_of_cells<2>(table, {{load(u + k), load(v + k)}, {load(u + k + 64), load(v + k + 64)}}, claims + k);
+  }
   for (; k + 128 <= pairs; k += 128) {
     claims_of_cells<2>(table, {cells_at(row, k), cells_at(row, k + 64)}, claims + k);
   }
@@ -171,9 +177,10 @@ TASSILO_AVX512 inline void store_columns(__mmask64 bits, int c, std::uint16_t* t
     _mm512_storeu_si512(to + 32, _mm512_add_epi16(_mm512_cvtepu8_epi16(_mm512_extracti64x4_epi64(columns, 1)), first));
 }
 
-/// Writes the runs of a row, 64 pixels after 64.
+/// Writes the runs of a row, 64 pixels after 64. Like rows below, `runs` is a copy: a store of bytes might change what
+/// is only referred to, so it would be looked up again after each.
 struct RunWriter {
-  const RowRuns& runs;
+  RowRuns runs;
   int begins = 0, ends = 0;
 
   /// The pixels from c on; those behind the row are no_color. `before` is the block before them.
@@ -202,8 +209,8 @@ struct RunWriter {
 };
 
 template <class Use>
-TASSILO_AVX512 inline void for_labels(const KernelTable& table, const std::uint8_t* claims, const YuvRow& row,
-                                      int width, std::uint8_t* labels, Use use) {
+TASSILO_AVX512 inline void for_labels(const KernelTable& table, const std::uint8_t* claims, YuvRow row, int width,
+                                      std::uint8_t* labels, Use use) {
   const std::uint8_t* of_y = table.bright.data();
   const Table256 bright{load(of_y), load(of_y + 64), load(of_y + 128), load(of_y + 192)};
   const __m512i label_of_rank =
@@ -265,7 +272,7 @@ struct Dilate {
 
 /// A vector of the first `width - c` pixels of three rows, no_color behind them.
 template <class Operation>
-TASSILO_AVX512 inline __m512i column(const ThreeRows& rows, int width, int c) {
+TASSILO_AVX512 inline __m512i column(ThreeRows rows, int width, int c) {
   if (c + 64 <= width) return Operation::join(load(rows.above + c), load(rows.here + c), load(rows.below + c));
   if (c >= width) return _mm512_setzero_si512();
   const __mmask64 inside = _bzhi_u64(~0ull, static_cast<unsigned>(width - c));
@@ -275,7 +282,7 @@ TASSILO_AVX512 inline __m512i column(const ThreeRows& rows, int width, int c) {
 }
 
 template <class Operation, class Use>
-TASSILO_AVX512 inline void over_nine(const ThreeRows& rows, int width, std::uint8_t* labels, Use use) {
+TASSILO_AVX512 inline void over_nine(ThreeRows rows, int width, std::uint8_t* labels, Use use) {
   __m512i before = _mm512_setzero_si512(), here = column<Operation>(rows, width, 0), out_before = before;
   for (int c = 0; c < width; c += 64) {
     const __m512i after = column<Operation>(rows, width, c + 64);
