@@ -160,6 +160,14 @@ void bind_segment(py::module_& module) {
         return segment(frame.view, colors.classifier);
       },
       "Classifies every pixel of a frame and run-length encodes at once.", "frame"_a, "colors"_a);
+  module.def(
+      "segment_opened",
+      [](const Frame& frame, const Colors& colors) {
+        check_range("frame", frame, colors.file.table.range);
+        py::gil_scoped_release unlocked;
+        return segment_opened(frame.view, colors.classifier);
+      },
+      "The same with every region opened by 3 x 3 pixels: single odd pixels become no_color.", "frame"_a, "colors"_a);
 }
 
 constexpr const char* kOptionsMust =

@@ -426,6 +426,26 @@ void bind_operators(py::module_& module) {
   def(module, "components", &components, kAnything, "The connected parts, in the order of their first runs.",
       "region"_a, "connectivity"_a = Connectivity::eight);
   module.def(
+      "component_features",
+      [](const Region& region, Connectivity connectivity) {
+        RecycledVector<ComponentFeatures> parts;
+        {
+          py::gil_scoped_release unlocked;
+          parts = component_features(region, connectivity);
+        }
+        std::vector<py::dict> found;
+        for (const ComponentFeatures& part : parts) {
+          py::dict features;
+          features["area"] = part.area;
+          features["center"] = std::pair(part.center.x, part.center.y);
+          features["box"] = part.box;
+          found.push_back(std::move(features));
+        }
+        return found;
+      },
+      "Area, center and box of every component, without making the components.", "region"_a,
+      "connectivity"_a = Connectivity::eight);
+  module.def(
       "label_runs",
       [](const Region& region, Connectivity connectivity) {
         const RunLabels labels = label_runs(region, connectivity);

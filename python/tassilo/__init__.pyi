@@ -174,6 +174,9 @@ def skeleton(region: Region) -> Region:
 def components(region: Region, connectivity: Literal[4, 8] = 8) -> List[Region]:
     """The connected parts, in the order of their first runs."""
 
+def component_features(region: Region, connectivity: Literal[4, 8] = 8) -> List[Dict[str, Any]]:
+    """Area, center and box of every component, without making the components."""
+
 def label_runs(region: Region, connectivity: Literal[4, 8] = 8) -> Tuple[NDArray[numpy.int32], int]:
     """The component of each run, 0 .. count - 1, and the count."""
 
@@ -444,6 +447,9 @@ class Segmentation:
 
 def segment(frame: Frame, colors: ColorTable) -> Segmentation:
     """Classifies every pixel of a frame and run-length encodes at once."""
+
+def segment_opened(frame: Frame, colors: ColorTable) -> Segmentation:
+    """The same with every region opened by 3 x 3 pixels: single odd pixels become no_color."""
 
 def train_colors(samples: object, held_out: object = None, images_range: Literal['limited', 'full'] = 'limited', options: Dict[str, float] = {}) -> ColorTable:
     """A table from labelled regions: the path of a samples.yaml, or (frame, region, class name) tuples.

@@ -118,3 +118,11 @@ def test_what_is_odd_is_a_warning(tmp_path):
                                            "- {image: a.png, class: green, rectangle: [60, 2, 90, 30]}\n")
     with pytest.warns(UserWarning, match="leaves the image"):
         tassilo.train_colors(tmp_path / "samples.yaml")
+
+
+def test_an_opened_segmentation_has_every_region_opened():
+    table = tassilo.train_colors(samples())
+    noisy = picture(9)
+    plain, opened = tassilo.segment(noisy, table), tassilo.segment_opened(noisy, table)
+    for color in ("red", "green"):
+        assert opened[color] == tassilo.opening(plain[color], tassilo.rectangle(3, 3))

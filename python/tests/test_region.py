@@ -237,3 +237,12 @@ def test_skeletons():
     assert middle <= region and tassilo.skeleton(middle) == middle
     assert len(tassilo.components(middle)) == len(tassilo.components(region))
     assert tassilo.hole_count(middle) == tassilo.hole_count(region)
+
+
+def test_component_features_tell_what_the_components_are():
+    region = Region.from_mask(np.random.default_rng(4).random((40, 60)) < 0.4)
+    for connectivity in (4, 8):
+        parts = tassilo.components(region, connectivity)
+        told = tassilo.component_features(region, connectivity)
+        assert [f["area"] for f in told] == [len(part) for part in parts]
+        assert [f["box"] for f in told] == [part.box for part in parts]
