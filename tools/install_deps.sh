@@ -10,7 +10,9 @@ usage: tools/install_deps.sh [--references]
   Installs the missing packages through apt-get (tested on Debian 12; about 300 MB to download on
   a bare machine) and the web UI's packages through npm where webui/ exists. Does nothing when nothing is missing.
   --references  also clang (for fuzzing), the OpenCV modules that some tests compare with, and Leptonica, with which a
-                benchmark does (about 80 MB more); without them those tests are skipped and listed
+                benchmark does (about 80 MB more); without them those tests are skipped and listed.
+                And what builds for aarch64 and runs it here: cross compiler, qemu-user, GoogleTest's source
+                (about 70 MB)
 EOF
 }
 
@@ -34,6 +36,7 @@ packages=(
 )
 # imgproc and calib3d alone: the whole libopencv-dev is twice as large.
 if [ "$references" = 1 ]; then packages+=(clang libopencv-imgproc-dev libopencv-calib3d-dev libleptonica-dev); fi
+if [ "$references" = 1 ]; then packages+=(g++-aarch64-linux-gnu qemu-user googletest); fi
 if [ -d webui ]; then packages+=(nodejs npm); fi
 
 is_installed() { dpkg-query --show --showformat='${db:Status-Status}\n' "$1" 2>/dev/null | grep -qx installed; }
