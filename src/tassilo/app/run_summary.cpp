@@ -56,7 +56,8 @@ std::string RunSummary::text(double seconds) const {
   const std::int64_t dropped = frames_ > 0 ? last_index_ - first_index_ + 1 - frames_ : 0;
   out += fmt::format(", {} dropped\n", dropped);
   if (odometry_known_ + odometry_missing_ > 0)
-    out += fmt::format("odometry known at {} frames, missing at {}\n", odometry_known_, odometry_missing_);
+    out += fmt::format("odometry known at {} frames, missing at {}{}\n", odometry_known_, odometry_missing_,
+                       odometry_known_ == 0 ? ": is it on the clock of the frames?" : "");
   if (frames_ == 0) return out;
   out += fmt::format("\n{:16}{:>10}{:>10}\n", "seen", "frames", "objects");
   for (const auto& [kind, count] : seen_) out += fmt::format("{:16}{:>10}{:>10}\n", kind, count.frames, count.objects);
