@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "support/bench_frames.h"
 #include "support/recording.h"
 #include "tassilo/base/median.h"
 
@@ -30,34 +31,10 @@ std::string size_label(const Frame& frame) {
 }
 
 void BM_ScalarReference(benchmark::State& state) {
-  const Recording& r = recording(static_cast<int>(state.range(0)));
-  if (r.frames[0].view.format() != PixelFormat::yuv422p) {
-    state.SkipWithError("the reference reads planes, the recording has none");
-    return;
-  }
-  const ColorTable& table = r.setup.colors;
-  std::array<ClassBits, 256> bright{};
-  for (int y = 0; y < 256; ++y)
-    for (const ColorClass color : kColorClasses)
-      if (table.brightness[static_cast<std::size_t>(class_index(color))].contains(y))
-        bright[static_cast<std::size_t>(y)] |= class_bit(color);
-  std::vector<ClassBits> out(static_cast<std::size_t>(r.frames[0].view.width() * r.frames[0].view.height()));
+  const test::BenchFrames& frames = test::bench_frames(static_cast<int>(state.range(0)));
   std::size_t next = 0;
-  for (auto _ : state) {
-    const FrameView& view = r.frames[next++ % r.frames.size()].view;
-    for (int row_index = 0; row_index < view.height(); ++row_index) {
-      const YuvRow row = view.row(row_index);
-      ClassBits* to = out.data() + static_cast<std::ptrdiff_t>(row_index) * view.width();
-      for (int c = 0; c + 1 < view.width(); c += 2) {
-        const ClassBits chroma = table.chroma[static_cast<std::size_t>(row.v[c / 2] * 256 + row.u[c / 2])];
-        to[c] = chroma & bright[row.y[c]];
-        to[c + 1] = chroma & bright[row.y[c + 1]];
-      }
-    }
-    benchmark::DoNotOptimize(out.data());
-    benchmark::ClobberMemory();
-  }
-  state.SetLabel(size_label(r.frames[0]));
+  for (auto _ : state) frames.scalar_reference(frames.next(next));
+  frames.report(state);
 }
 
 void BM_FrameToScene(benchmark::State& state) {

@@ -1,7 +1,8 @@
 // How long does segmentation take, from a frame in memory to one region a class, for each kernel? Frames of the shipped
 // recordings, whose tables are really trained, and those frames with noise and at other sizes, cycled so that no branch
-// predictor knows them by heart. Every kernel's answer is compared with the plain one's before any time counts.
-// The scalar reference, and memcpy, run in the same process: compare ratios (counter x_reference), not milliseconds.
+// predictor knows them by heart. Every kernel's segmentation is compared with the plain one's before any time counts;
+// that openings and components are right is left to the tests. The scalar reference, and memcpy, run in the same
+// process: compare ratios (counter x_reference), not milliseconds.
 
 #include <benchmark/benchmark.h>
 

@@ -67,6 +67,7 @@ Recording load_recording(const std::string& name, const std::string& samples_fil
   recording.setup.colors = trained_colors(samples_file);
   recording.setup.field = read_field(robot.field.value());
   recording.setup.camera = camera.model;
+  recording.setup.camera->name = "a camera with a name too long for a string to hold by itself";
   recording.setup.mount = camera.mount;
   SourceOptions options;
   options.location = (kData / name / "video.mkv").string();

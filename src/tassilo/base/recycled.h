@@ -19,9 +19,10 @@ void give_back_block(void* block, std::size_t bytes) noexcept;
 /// Gives containers memory that was in use before: what one frame leaves behind serves the next, so that nothing is
 /// allocated per frame in steady state, and plain calls such as opening(region, disc(3.5)) need no workspace.
 ///
-/// Sizes are rounded up to powers of two. A thread keeps what it frees (of each size some 256 KiB or 8 blocks, of
-/// blocks from 1 MiB on two) and hands what is more to a pool that all threads share, equally bounded; the rest goes
-/// back to the system. Under AddressSanitizer kept blocks are poisoned, so that no use after free hides.
+/// Sizes are rounded up to powers of two. A thread keeps what it frees, of each size some 256 KiB or 8 blocks, of
+/// blocks from 1 MiB on two (so at most some 260 MiB, and only of sizes it has used), and hands what is more to a pool
+/// that all threads share, equally bounded; the rest goes back to the system. Under AddressSanitizer kept blocks are
+/// poisoned, so that no use after free hides.
 ///
 /// cost     some ns where memory is at hand; stateless, safe from any thread
 template <class T>

@@ -25,8 +25,10 @@ class RowLabeler {
   int operator()(int r, std::uint8_t* labels, const RowRuns* runs) {
     const YuvRow row = frame_.row(r);
     // With halved chroma rows two rows share their claims.
-    if (row.u != claimed_) kernel_.claims(table_, row, (frame_.width() + 1) / 2, claims_.data());
-    claimed_ = row.u;
+    if (row.u != claimed_u_ || row.v != claimed_v_)
+      kernel_.claims(table_, row, (frame_.width() + 1) / 2, claims_.data());
+    claimed_u_ = row.u;
+    claimed_v_ = row.v;
     return kernel_.labels(table_, claims_.data(), row, frame_.width(), labels, runs);
   }
 
@@ -35,7 +37,7 @@ class RowLabeler {
   const KernelTable& table_;
   const ColorKernel& kernel_;
   RecycledBuffer<std::uint8_t> claims_;
-  const std::uint8_t* claimed_ = nullptr;  ///< Chroma row that the claims are of.
+  const std::uint8_t *claimed_u_ = nullptr, *claimed_v_ = nullptr;  ///< Chroma row that the claims are of.
 };
 
 void set_size(Segmentation& segmentation, int width, int height) {

@@ -43,14 +43,14 @@ class Classifier {
 ///
 /// frame    any format, at most 32767 x 32767 pixels
 /// recycled a former result whose memory is used again; in steady state nothing is allocated
-/// cost     O(pixels + runs), about .06 ns a pixel and 3 ns a run with AVX-512, whatever the noise; safe from any
-/// thread source   DESIGN 6.2; equals `classify` pixel by pixel, whatever kernel is in use (base/kernel.h)
+/// cost     O(pixels + runs), about .1 ns a pixel and 5 ns a run with AVX-512; safe from any thread
+/// source   DESIGN 6.2; equals `classify` pixel by pixel, whatever kernel is in use (base/kernel.h)
 Segmentation segment(const FrameView& frame, const Classifier& classifier, Segmentation recycled = {});
 
 /// The same with every region opened by a square of 3 x 3 pixels: single odd pixels become no_color.
 ///
-/// Equals opening3x3(segment(frame, classifier)), but never makes the runs of what the opening takes away: at most half
-/// as long again as `segment`.
+/// Equals opening3x3(segment(frame, classifier)), but never makes the runs of what the opening takes away: about half
+/// as long again as `segment`. Limits, `recycled`, threads and source as there.
 Segmentation segment_opened(const FrameView& frame, const Classifier& classifier, Segmentation recycled = {});
 
 /// Every region opened by a square of 3 x 3 pixels; what an opening takes away is no_color.

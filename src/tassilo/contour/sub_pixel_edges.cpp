@@ -116,7 +116,10 @@ class PointFinder {
     const std::int32_t* const around[2][2] = {{here.squared + column - 1, here.squared + column + 1},
                                               {rows[0].squared + column, rows[2].squared + column}};
     const float before = log2_of(*around[steeper_down][0]), after = log2_of(*around[steeper_down][1]);
-    const float offset = (after - before) / (2 * (2 * log2_of(here.squared[column]) - before - after));
+    // Steep and flat at once, the three logarithms may be equal, or the middle one not the largest, for want of digits:
+    // then there is no better place than the pixel itself.
+    const float bend = 2 * log2_of(here.squared[column]) - before - after;
+    const float offset = bend > 0 ? std::clamp((after - before) / (2 * bend), -.5F, .5F) : 0;
     const float down = static_cast<float>(steeper_down) * offset;
     points_.push_back({static_cast<float>(column) + (offset - down), static_cast<float>(row) + down,
                        static_cast<std::int16_t>(column), static_cast<std::int16_t>(row), slope_x, slope_y,
@@ -295,8 +298,7 @@ RecycledVector<Contour> sub_pixel_edges_by(const GradientKernel& kernel, const F
 }
 
 RecycledVector<Contour> sub_pixel_edges(const FrameView& frame, const Region& region, const EdgeOptions& options) {
-  static const GradientKernel kernel = version_in_use(gradient_kernels());
-  return sub_pixel_edges_by(kernel, frame, region, options);
+  return sub_pixel_edges_by(version_in_use(gradient_kernels()), frame, region, options);
 }
 
 }  // namespace tassilo

@@ -263,6 +263,27 @@ TEST(EdgePoints, OfARegionAreThoseOfTheFrameWithinIt) {
   }
 }
 
+// A ramp of 31 gray levels a pixel: gradients so nearly equal that their logarithms are.
+TEST(SubPixelEdges, OnARampAreFiniteAndWithinTheirPixel) {
+  std::mt19937 random(3);
+  std::size_t found = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    FrameBuffer buffer = make_frame_buffer(PixelFormat::yuv422p, kSize, kSize, ColorRange::full);
+    for (int r = 0; r < kSize; ++r)
+      for (int c = 0; c < kSize; ++c)
+        buffer.planes[0][r * buffer.strides[0] + c] =
+            static_cast<std::uint8_t>(std::clamp(31 * (c - 28) + static_cast<int>(random() % 60 == 0), 0, 255));
+    for (const int size : {3, 5, 7})
+      for (const EdgePoint& point :
+           edge_points(gradient_kernels()[0], buffer.frame.view, kAll, {.filter_size_px = size, .min_points = 1})) {
+        ++found;
+        ASSERT_LE(std::abs(point.x - static_cast<float>(point.column)), .5F);
+        ASSERT_LE(std::abs(point.y - static_cast<float>(point.row)), .5F);
+      }
+  }
+  EXPECT_GT(found, 1000u);
+}
+
 TEST(SubPixelEdges, NeedSomewhereTheHighThreshold) {
   const Frame frame = drawn(PixelFormat::nv12, {.contrast = 30}, StraightEdge{0, 0});  // about 11 gray levels / px
   EXPECT_EQ(sub_pixel_edges(frame.view, kAll, {.low = 3, .high = 8}).size(), 1u);

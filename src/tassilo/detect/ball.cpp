@@ -41,7 +41,8 @@ void for_each_open(const PixelRun& run, std::span<const PixelRun> others, Visit 
   for (; c < run.end; ++c) visit(c);
 }
 
-/// Rim of a segment without what the image border cuts. O(pixels of the rim + runs).
+/// Rim of a segment without what the image border cuts. O(pixels of the rim + products of the numbers of runs in
+/// neighboring rows).
 RecycledVector<RimPoint> rim_of(const View& view, const Region& segment) {
   RecycledVector<RimPoint> rim;
   const auto add = [&](int c, int r, int dc, int dr) {

@@ -24,7 +24,7 @@ struct RunLabels {
 
 /// Labels connected runs; components are numbered by their first run in the region's order.
 ///
-/// cost     O(R a(R)) for R runs, two allocations; safe from any thread.
+/// cost     O(R a(R)) for R runs; safe from any thread.
 /// source   He, Chao, Suzuki, "A run-based two-scan labeling algorithm", IEEE TIP 17(5), 2008.
 RunLabels label_runs(const Region& region, Connectivity connectivity = Connectivity::eight);
 
@@ -36,12 +36,13 @@ struct ComponentFeatures {
 };
 /// Area, centre and box of every component, in the order of `label_runs`, without making the components: what most of
 /// them, being noise, are judged by. HALCON `connection`, then `area_center` and `smallest_rectangle1`; OpenCV
-/// `connectedComponentsWithStats`. O(R a(R)), about 5 ns a run.
+/// `connectedComponentsWithStats`. None for the empty region.
+/// O(R a(R)), about 6 ns a run; safe from any thread.
 RecycledVector<ComponentFeatures> component_features(const Region& region,
                                                      Connectivity connectivity = Connectivity::eight);
 
 /// The connected components, each as a region, in the order of their first runs; every run is in exactly one.
-/// None for the empty region. HALCON `connection`. Cost as `label_runs`, and one allocation a component.
+/// None for the empty region. HALCON `connection`. Cost as `label_runs`, and a piece of memory a component.
 RecycledVector<Region> components(const Region& region, Connectivity connectivity = Connectivity::eight);
 
 }  // namespace tassilo

@@ -12,6 +12,8 @@ namespace tassilo {
 // source   Serra, "Image Analysis and Mathematical Morphology", 1982. The element is taken apart into its maximal
 //          boxes (own; a disc has one for each distinct half-width), of which each works on columns and rows apart
 //          and grows by doubling: O(R (b + log h)) for b boxes and height h, R counting the runs in between.
+//          A region with a run in every twelve words of 64 pixels of its box, or more, is worked on as bits of that
+//          box: O(W (b + log h)) for W words, never more than O(R (b + log h)); docs/decisions/0009.
 
 /// Centred box of width x height pixels, both >= 1; for even sizes the origin is right of and below the middle.
 Region rectangle(int width, int height);

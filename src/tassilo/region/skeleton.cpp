@@ -259,9 +259,6 @@ Region skeleton_by(const ThinningKernel& kernel, const Region& region) {
   return region_of(tiled, region.runs().size());
 }
 
-Region skeleton(const Region& region) {
-  static const ThinningKernel kernel = version_in_use(thinning_kernels());
-  return skeleton_by(kernel, region);
-}
+Region skeleton(const Region& region) { return skeleton_by(version_in_use(thinning_kernels()), region); }
 
 }  // namespace tassilo

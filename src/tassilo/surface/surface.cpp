@@ -198,9 +198,7 @@ Surface find_surface(const SurfaceInput& input, const GroundMap* ground, const S
   paint(surface, *input.white, SurfaceKind::wall);
   for (const Region* region : input.colored) paint(surface, *region, SurfaceKind::object);
 
-  thread_local RecycledVector<Gap> gaps, wide;
-  gaps.clear();
-  wide.clear();
+  RecycledVector<Gap> gaps, wide;
   gaps_along_columns(surface, *input.carpet, gaps);  // before any gap along a row becomes carpet
   gaps_along_rows(*input.carpet, gaps);
   const LineSize size(input, ground, options);

@@ -116,9 +116,11 @@ struct SurfaceInput {
 /// a row or a column belongs to a line when it is no longer than a line lying there would show and carpet bounds it at
 /// both ends.
 ///
-/// ground    pixel -> floor of this image, for the size of a line; null without calibration: then a fortieth of the
-/// image width counts recycled  a former result whose memory is used again cost      one write a pixel and O(runs +
-/// pixels of lines); safe from any thread. source: own
+/// ground    pixel -> floor of this image, for the size of a line;
+///           null without calibration: then a fortieth of the image width counts
+/// recycled  a former result whose memory is used again
+/// cost      one write a pixel and O(runs + pixels of lines); safe from any thread
+/// source    own
 Surface find_surface(const SurfaceInput& input, const GroundMap* ground, const SurfaceOptions& options = {},
                      Surface recycled = {});
 

@@ -35,7 +35,9 @@ Vision::Vision(const VisionSetup& setup) : classifier_(setup.colors), field_(set
   if (!setup.camera || !setup.mount) return;
   setup.camera->check();
   setup.mount->check();
-  const MountedCamera camera(*setup.camera, *setup.mount);
+  CameraModel model = *setup.camera;
+  model.name.clear();  // detectors copy cameras, and a long name would take memory each time
+  const MountedCamera camera(model, *setup.mount);
   optics_ = std::make_unique<const Optics>(camera, options_.mount_sigma());
   sectors_ = std::make_unique<const SectorMap>(camera, options_.free_space);
 }

@@ -8,7 +8,8 @@
 
 // To add a kernel: 1. its name in base/kernel.h and what it needs in kernel.cpp; 2. a source here with its
 // functions (or those of a simpler one); 3. a case in `color_kernel`. The tests run every supported kernel against the
-// definition. See also region/internal.
+// definition. Others: region/internal/plane_kernel.h
+// and thinning.h, contour/internal/gradient.h.
 
 namespace tassilo {
 

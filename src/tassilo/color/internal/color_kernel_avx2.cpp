@@ -7,9 +7,8 @@
 
 #include <array>
 
+#include "tassilo/base/kernel_targets.h"
 #include "tassilo/color/internal/color_kernel.h"
-
-#define TASSILO_AVX2 __attribute__((target("avx2,bmi,bmi2,popcnt,lzcnt")))
 
 namespace tassilo {
 namespace {

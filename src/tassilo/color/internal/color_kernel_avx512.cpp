@@ -3,22 +3,14 @@
 
 #if defined(__x86_64__)
 
-#if defined(__GNUC__) && !defined(__clang__)
-// g++ 12 takes the deliberately undefined operands inside its own intrinsics for mistakes.
-#pragma GCC diagnostic ignored "-Wuninitialized"
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#endif
-
 #include <immintrin.h>
 
 #include <array>
 #include <cstddef>
 #include <cstring>
 
+#include "tassilo/base/kernel_targets.h"
 #include "tassilo/color/internal/color_kernel.h"
-
-#define TASSILO_AVX512 \
-  __attribute__((target("avx512f,avx512bw,avx512vl,avx512dq,avx512vbmi,avx512vbmi2,avx512bitalg,bmi,bmi2,popcnt")))
 
 namespace tassilo {
 namespace {
@@ -177,8 +169,8 @@ TASSILO_AVX512 inline void store_columns(__mmask64 bits, int c, std::uint16_t* t
     _mm512_storeu_si512(to + 32, _mm512_add_epi16(_mm512_cvtepu8_epi16(_mm512_extracti64x4_epi64(columns, 1)), first));
 }
 
-/// Writes the runs of a row, 64 pixels after 64. Like rows below, `runs` is a copy: a store of bytes might change what
-/// is only referred to, so it would be looked up again after each.
+/// Writes the runs of a row, 64 pixels after 64. Like rows below, `runs` is a copy: a store of bytes might change
+/// what is only referred to, so it would be looked up again after each.
 struct RunWriter {
   RowRuns runs;
   int begins = 0, ends = 0;

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <type_traits>
 
+#include "tassilo/base/kernel_targets.h"
+
 namespace tassilo {
 namespace {
 
@@ -149,25 +151,24 @@ void peaks_plain(const std::array<GradientRow, 3>& rows, std::int32_t least, std
                  std::span<std::uint32_t> to) {
   peaks(rows, least, columns, to);
 }
-#if defined(__x86_64__) && defined(__GNUC__)
+#if defined(__x86_64__)
 
 // The same words, compiled for wider registers.
-[[gnu::target("avx2")]] void gradients_avx2(const BrightnessRows& rows, int reach, std::span<const int> columns,
-                                            const GradientRow& to) {
+TASSILO_AVX2 void gradients_avx2(const BrightnessRows& rows, int reach, std::span<const int> columns,
+                                 const GradientRow& to) {
   gradients(rows, reach, columns, to);
 }
-[[gnu::target("avx2")]] void peaks_avx2(const std::array<GradientRow, 3>& rows, std::int32_t least,
-                                        std::span<const int> columns, std::span<std::uint32_t> to) {
+TASSILO_AVX2 void peaks_avx2(const std::array<GradientRow, 3>& rows, std::int32_t least, std::span<const int> columns,
+                             std::span<std::uint32_t> to) {
   peaks(rows, least, columns, to);
 }
 
-[[gnu::target("avx512f,avx512bw,avx512vl,avx512dq,prefer-vector-width=512")]] void gradients_avx512(
-    const BrightnessRows& rows, int reach, std::span<const int> columns, const GradientRow& to) {
+TASSILO_AVX512 void gradients_avx512(const BrightnessRows& rows, int reach, std::span<const int> columns,
+                                     const GradientRow& to) {
   gradients(rows, reach, columns, to);
 }
-[[gnu::target("avx512f,avx512bw,avx512vl,avx512dq,prefer-vector-width=512")]] void peaks_avx512(
-    const std::array<GradientRow, 3>& rows, std::int32_t least, std::span<const int> columns,
-    std::span<std::uint32_t> to) {
+TASSILO_AVX512 void peaks_avx512(const std::array<GradientRow, 3>& rows, std::int32_t least,
+                                 std::span<const int> columns, std::span<std::uint32_t> to) {
   peaks(rows, least, columns, to);
 }
 

@@ -1,9 +1,8 @@
 #if defined(__x86_64__)
 
+#include "tassilo/base/kernel_targets.h"
 #include "tassilo/region/internal/plane_kernel.h"
 #include "tassilo/region/internal/plane_loops.h"
-
-#define TASSILO_AVX2 __attribute__((target("avx2,bmi,bmi2")))
 
 namespace tassilo {
 namespace {

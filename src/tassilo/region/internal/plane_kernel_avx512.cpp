@@ -1,21 +1,10 @@
 #if defined(__x86_64__)
 
-#if defined(__GNUC__) && !defined(__clang__)
-// g++ 12 takes the deliberately undefined operands inside its own intrinsics for mistakes.
-#pragma GCC diagnostic ignored "-Wuninitialized"
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#endif
-
 #include <immintrin.h>
 
+#include "tassilo/base/kernel_targets.h"
 #include "tassilo/region/internal/plane_kernel.h"
 #include "tassilo/region/internal/plane_loops.h"
-
-#if defined(__clang__)
-#define TASSILO_AVX512 __attribute__((target("avx512f,avx512bw,avx512vl,bmi,bmi2,popcnt")))
-#else
-#define TASSILO_AVX512 __attribute__((target("avx512f,avx512bw,avx512vl,bmi,bmi2,popcnt,prefer-vector-width=512")))
-#endif
 
 namespace tassilo {
 namespace {

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 
+#include "tassilo/base/kernel_targets.h"
+
 namespace tassilo {
 namespace {
 
@@ -68,18 +70,16 @@ void find_plain(std::span<const ThinningTile> tiles, std::span<const std::int32_
   find(tiles, active, step, found);
 }
 
-#if defined(__x86_64__) && defined(__GNUC__)
+#if defined(__x86_64__)
 
 // The same words, compiled for wider registers: the compiler turns the eight rows of a tile into one or two of them.
-[[gnu::target("avx2")]] void find_avx2(std::span<const ThinningTile> tiles, std::span<const std::int32_t> active,
-                                       ThinningStep step, std::span<OwnRows> found) {
+TASSILO_AVX2 void find_avx2(std::span<const ThinningTile> tiles, std::span<const std::int32_t> active,
+                            ThinningStep step, std::span<OwnRows> found) {
   find(tiles, active, step, found);
 }
 
-[[gnu::target("avx512f,avx512vl,prefer-vector-width=512")]] void find_avx512(std::span<const ThinningTile> tiles,
-                                                                             std::span<const std::int32_t> active,
-                                                                             ThinningStep step,
-                                                                             std::span<OwnRows> found) {
+TASSILO_AVX512 void find_avx512(std::span<const ThinningTile> tiles, std::span<const std::int32_t> active,
+                                ThinningStep step, std::span<OwnRows> found) {
   find(tiles, active, step, found);
 }
 
