@@ -38,7 +38,6 @@ struct Cells {
   __m512i u, v;
 };
 TASSILO_AVX512 inline Cells cells_at(const YuvRow& row, int k) {
-  if (row.chroma_step == 1) return {load(row.u + k), load(row.v + k)};
   // NV12 has U V U V .., packed formats (Y) U (Y) V ..: first the chroma bytes, then U apart from V.
   const __m512i even = load(kEven), odd = load(kOdd);
   const bool u_first = row.u < row.v;
@@ -94,36 +93,36 @@ TASSILO_AVX512 inline void claims_of_cells(const KernelTable& table, const Cells
   for (std::size_t i = 0; i < N; ++i) _mm512_storeu_si512(claims + 64 * i, found[i]);
 }
 
-TASSILO_AVX512 void claims_of(const KernelTable& table, const YuvRow& of_row, int pairs, std::uint8_t* claims) {
-  const YuvRow row = of_row;  // not to be looked up again after every store of bytes, which might change it
+TASSILO_AVX512 void claims_of_planes(const KernelTable& table, const std::uint8_t* u, const std::uint8_t* v, int pairs,
+                                     std::uint8_t* claims) {
+  int k = 0;
+  for (; k + 128 <= pairs; k += 128)
+    claims_of_cells<2>(table, {{load(u + k), load(v + k)}, {load(u + k + 64), load(v + k + 64)}}, claims + k);
+  for (; k + 64 <= pairs; k += 64) claims_of_cells<1>(table, {{load(u + k), load(v + k)}}, claims + k);
+  if (k == pairs) return;
+  const auto n = static_cast<unsigned>(pairs - k);
+  const __mmask64 rest = _bzhi_u64(~0ull, n);
+  alignas(64) std::array<std::uint8_t, 64> block;
+  claims_of_cells<1>(table, {{_mm512_maskz_loadu_epi8(rest, u + k), _mm512_maskz_loadu_epi8(rest, v + k)}},
+                     block.data());
+  std::memcpy(claims + k, block.data(), n);
+}
+
+TASSILO_AVX512 void claims_of(const KernelTable& table, const YuvRow& row, int pairs, std::uint8_t* claims) {
   if (!table.has_windows) {
     plain_color_kernel.claims(table, row, pairs, claims);
     return;
   }
+  if (row.chroma_step == 1) {
+    claims_of_planes(table, row.u, row.v, pairs, claims);
+    return;
+  }
   int k = 0;
-  if (row.chroma_step == 1) {
-    const std::uint8_t *u = row.u, *v = row.v;
-    for (; k + 128 <= pairs; k += 128)
-      claims_of_cells<2>(table, {{load(u + k), load(v + k)}, {load(u + k + 64), load(v + k + 64)}}, claims + k);
-  }
-  for (; k + 128 <= pairs; k += 128) {
-    claims_of_cells<2>(table, {cells_at(row, k), cells_at(row, k + 64)}, claims + k);
-  }
-  for (; k + 64 <= pairs; k += 64) {
-    claims_of_cells<1>(table, {cells_at(row, k)}, claims + k);
-  }
+  for (; k + 128 <= pairs; k += 128) claims_of_cells<2>(table, {cells_at(row, k), cells_at(row, k + 64)}, claims + k);
+  for (; k + 64 <= pairs; k += 64) claims_of_cells<1>(table, {cells_at(row, k)}, claims + k);
   if (k == pairs) return;
-  const auto n = static_cast<unsigned>(pairs - k);
-  if (row.chroma_step == 1) {
-    const __mmask64 rest = _bzhi_u64(~0ull, n);
-    alignas(64) std::array<std::uint8_t, 64> block;
-    const Cells cells{_mm512_maskz_loadu_epi8(rest, row.u + k), _mm512_maskz_loadu_epi8(rest, row.v + k)};
-    claims_of_cells<1>(table, {cells}, block.data());
-    std::memcpy(claims + k, block.data(), n);
-  } else {
-    const YuvRow rest{row.y, row.u + k * row.chroma_step, row.v + k * row.chroma_step, row.y_step, row.chroma_step};
-    plain_color_kernel.claims(table, rest, pairs - k, claims + k);
-  }
+  const YuvRow rest{row.y, row.u + k * row.chroma_step, row.v + k * row.chroma_step, row.y_step, row.chroma_step};
+  plain_color_kernel.claims(table, rest, pairs - k, claims + k);
 }
 
 /// The 256 bytes of a table.
@@ -201,8 +200,12 @@ struct RunWriter {
 };
 
 template <class Use>
-TASSILO_AVX512 inline void for_labels(const KernelTable& table, const std::uint8_t* claims, YuvRow row, int width,
-                                      std::uint8_t* labels, Use use) {
+TASSILO_AVX512 inline void for_labels(const KernelTable& table, const std::uint8_t* claims, const YuvRow& row,
+                                      int width, std::uint8_t* labels, Use use) {
+  // One by one: the caller has just written them one by one, so that reading all at once would wait for the stores. And
+  // not through the reference, which would be looked up again after every store of bytes.
+  const std::uint8_t *const y_of_row = row.y, *const u_of_row = row.u;
+  const int y_step = row.y_step;
   const std::uint8_t* of_y = table.bright.data();
   const Table256 bright{load(of_y), load(of_y + 64), load(of_y + 128), load(of_y + 192)};
   const __m512i label_of_rank =
@@ -213,13 +216,13 @@ TASSILO_AVX512 inline void for_labels(const KernelTable& table, const std::uint8
   for (; c + 64 <= width; c += 64) {
     const __m512i pairs = _mm512_castsi256_si512(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(claims + c / 2)));
     __m512i y;
-    if (row.y_step == 1) {
-      y = load(row.y + c);
-    } else if (row.y < row.u) {
-      y = _mm512_permutex2var_epi8(load(row.y + 2 * c), even, load(row.y + 2 * c + 64));
+    if (y_step == 1) {
+      y = load(y_of_row + c);
+    } else if (y_of_row < u_of_row) {
+      y = _mm512_permutex2var_epi8(load(y_of_row + 2 * c), even, load(y_of_row + 2 * c + 64));
     } else {
       // U Y V Y: begins one byte before Y, so that no byte behind the row is read.
-      y = _mm512_permutex2var_epi8(load(row.y + 2 * c - 1), odd, load(row.y + 2 * c + 63));
+      y = _mm512_permutex2var_epi8(load(y_of_row + 2 * c - 1), odd, load(y_of_row + 2 * c + 63));
     }
     const __m512i here = labels_of_pixels(bright, label_of_rank, _mm512_permutexvar_epi8(half, pairs), y);
     _mm512_storeu_si512(labels + c, here);
@@ -229,7 +232,7 @@ TASSILO_AVX512 inline void for_labels(const KernelTable& table, const std::uint8
   if (c < width) {
     alignas(64) std::array<std::uint8_t, 64> rest{};
     for (int k = c; k < width; ++k)
-      rest[static_cast<std::size_t>(k - c)] = table.label(claims[k / 2], row.y[k * row.y_step]);
+      rest[static_cast<std::size_t>(k - c)] = table.label(claims[k / 2], y_of_row[k * y_step]);
     std::memcpy(labels + c, rest.data(), static_cast<std::size_t>(width - c));
     use(c, before, load(rest.data()));
   }
