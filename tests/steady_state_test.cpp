@@ -1,4 +1,5 @@
-// Once it has seen what a recording shows, the vision allocates nothing more: every call of operator new is counted.
+// Once they have seen what a recording shows, vision and contours allocate nothing more: every call of operator new is
+// counted.
 
 #if defined(__GNUC__) && !defined(__clang__)
 // Where g++ 12 inlines one of our operators and not the other, it takes `free` for the wrong end of `new`.
@@ -18,6 +19,11 @@
 #include <vector>
 
 #include "support/recording.h"
+#include "tassilo/color/segment.h"
+#include "tassilo/contour/boundary_contours.h"
+#include "tassilo/contour/skeleton_contours.h"
+#include "tassilo/contour/sub_pixel_edges.h"
+#include "tassilo/region/skeleton.h"
 
 namespace {
 
@@ -77,6 +83,36 @@ INSTANTIATE_TEST_SUITE_P(Recordings, SteadyState,
                                          std::pair("d05_distract", "train_div/samples.yaml"),
                                          std::pair("d06_vga", "train_vga/samples.yaml")),
                          [](const auto& row) { return std::string(row.param.first); });
+
+/// How many skeleton lines, borders and edges a frame has.
+std::size_t thin_lines(const Frame& frame, const Segmentation& segmentation) {
+  std::size_t found = 0;
+  for (const ColorClass color : kColorClasses) {
+    const Region& region = segmentation.of(color);
+    const SkeletonContours lines = skeleton_contours(skeleton(region));
+    found += lines.contours.size() + lines.junctions.size() + boundary_contours(region).size();
+  }
+  const Region everywhere = Region::from_box({0, 0, segmentation.width, segmentation.height});
+  return found + sub_pixel_edges(frame.view, everywhere).size();
+}
+
+TEST(SteadyStateOfContours, AllocatesNothingPerFrame) {
+  const test::Recording recording = test::load_recording("d01_approach", "train_div/samples.yaml");
+  ASSERT_FALSE(recording.frames.empty());
+  const Classifier classifier(recording.setup.colors);
+  Segmentation segmentation;
+  std::size_t found = 0;
+  for (int pass = 0; pass < 4; ++pass)
+    for (const Frame& frame : recording.frames) {
+      const std::int64_t before = allocations;
+      segmentation = segment(frame.view, classifier, std::move(segmentation));
+      found += thin_lines(frame, segmentation);
+      if (pass > 1) {
+        EXPECT_EQ(allocations - before, 0) << "frame " << frame.index << ", pass " << pass;
+      }
+    }
+  EXPECT_GT(found, 10 * recording.frames.size());
+}
 
 TEST(AllocationCount, CountsAllocations) {
   const std::int64_t before = allocations;

@@ -45,6 +45,8 @@ Region mapped(const Region& region, const AffineMap& map) {
   using Limits = std::numeric_limits<std::int16_t>;
   expects(left > Limits::min() && top > Limits::min() && right < Limits::max() - 1 && bottom < Limits::max() - 1,
           "a mapped region stays within signed 16 bit");
+  // Both sides of what is a line now cross a row at the same place, but for rounding: a pixel may lie in between.
+  if (map.xx * map.yy == map.xy * map.yx) return {};
   return region_from_outlines(all, {static_cast<int>(std::floor(left)), static_cast<int>(std::floor(top)),
                                     static_cast<int>(std::ceil(right)) + 1, static_cast<int>(std::ceil(bottom)) + 1});
 }

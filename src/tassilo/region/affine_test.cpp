@@ -53,6 +53,8 @@ TEST(Affine, WholeStepsAndQuarterTurnsAreExact) {
     // A quarter turn counter-clockwise takes "right" to "up".
     EXPECT_EQ(mapped(region, rotation_about({0, 0}, kPi / 2)), mirrored_top_bottom(transposed(region), 0));
     EXPECT_TRUE(mapped(region, {0, 0, 1.3, 0, 0, 2.2}).empty()) << "no inverse";
+    // Onto the slanted line x = 3 y: what rounding leaves between its two sides is no pixel.
+    EXPECT_TRUE(mapped(region, {2.25, .75, 3, .75, .25, 1}).empty()) << "no inverse";
   }
   const AffineMap turn = rotation_about({5, 6}, .4), move{.x0 = 2, .y0 = 3};
   const PixelPoint p{7, -1};

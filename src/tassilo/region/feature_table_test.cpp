@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "tassilo/region/fill.h"
 #include "tassilo/region/inscribed.h"
 #include "tassilo/region/internal/test_regions.h"
+#include "tassilo/region/morphology.h"
 
 namespace tassilo {
 namespace {
@@ -65,6 +67,9 @@ TEST(FeatureTable, GivesWhatTheFunctionsGive) {
       EXPECT_EQ(values[k], feature_value(region, all[k])) << to_string(all[k]);
   }
   for (const double nothing : feature_values(Region{}, every_feature())) EXPECT_EQ(nothing, 0);
+  // "-0" would be written where 0 is meant.
+  for (const double value : feature_values(rectangle(9, 3), every_feature()))
+    EXPECT_FALSE(value == 0 && std::signbit(value));
 }
 
 }  // namespace

@@ -103,7 +103,7 @@ EquivalentEllipse equivalent_ellipse(const SecondMoments& moments) {
   // Pixels exactly on a line must give 0, not rounding noise; any other region's ratio is far above this.
   ellipse.rb = sum - spread > 1e-14 * sum ? std::sqrt(2 * (sum - spread)) : 0;
   if (spread == 0) return ellipse;
-  const double phi = -0.5 * std::atan2(2 * moments.rc, moments.cc - moments.rr);
+  const double phi = .5 * std::atan2(0 - 2 * moments.rc, moments.cc - moments.rr);  // from 0: never -0
   ellipse.phi = phi <= -kPi / 2 ? kPi / 2 : phi;
   return ellipse;
 }
