@@ -36,7 +36,8 @@ struct DistanceImage {
 /// window   together with the region not wider nor higher than 32768 px, so that squares fit 32 bit
 /// cost     O(width of the window x (rows of the window + rows of the region)); safe from any thread
 /// source   Meijster, Roerdink, Hesselink, "A general algorithm for computing distance transforms in linear time",
-///          Mathematical Morphology and its Applications to Image and Signal Processing, 2000.
+///          Mathematical Morphology and its Applications to Image and Signal Processing, 2000; squares by convex
+///          hulls and short distances by trying rows, own.
 DistanceImage distance_to(const Region& region, const PixelBox& window,
                           DistanceMetric metric = DistanceMetric::euclidean_squared);
 

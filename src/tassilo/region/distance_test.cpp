@@ -89,6 +89,19 @@ TEST(Distance, LevelsAreDilationsAndErosions) {
   }
 }
 
+TEST(Distance, IsTheSameNearAndFar) {
+  // Columns with pixels in easy reach, with none, and some where reach ends within a row or a column.
+  const Region region = Region::from_runs(
+      {{0, 0, 3}, {9, 1, 2}, {31, 5, 6}, {40, 0, 1}, {64, 17, 18}, {66, 32, 40}, {99, 70, 75}, {140, 3, 4}});
+  const PixelBox window{-3, -2, 91, 121};
+  const std::vector<PixelShift> in = pixels_of(region);
+  for (const DistanceMetric metric : kMetrics) {
+    const DistanceImage to = distance_to(region, window, metric);
+    for (int r = window.y0; r < window.y1; ++r)
+      for (int c = window.x0; c < window.x1; ++c) ASSERT_EQ(to.at(c, r), nearest(in, {c, r}, metric)) << c << ", " << r;
+  }
+}
+
 TEST(Distance, OfFarAwayPixelsDoesNotWrap) {
   const Region corner = Region::from_box({-16384, -16384, -16383, -16383});
   const DistanceImage far = distance_to(corner, {16380, 16383, 16384, 16384});
