@@ -1,17 +1,20 @@
-// How long do morphology and components of one dense class take, for each kernel, beside OpenCV's and Leptonica's
-// (where installed)? And the whole chain, frame -> 8 classes -> opened -> components with area, centre and box, beside
-// OpenCV's? The carpet of a painted noisy scene, frames cycled; OpenCV's masks are compared with our regions, and the
-// number of components, before time counts. Runs in, runs out for ours, masks in, masks out for the others.
-
-#include <benchmark/benchmark.h>
+// How long do morphology and components of one dense class take, for each kernel, beside OpenCV's, those of its run
+// lengths (ximgproc::rl) and Leptonica's, where installed? And the whole chain, frame -> 8 classes -> opened ->
+// components with area, centre and box, beside OpenCV's? The carpet of a painted noisy scene, frames cycled. Before any
+// time counts all regions are compared pixel by pixel, and of all components area, centre and box. Runs in, runs out
+// for ours and ximgproc::rl, masks in, masks out for the others.
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <map>
-#include <memory>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
+#include "bench.h"
+#include "references.h"
 #include "support/bench_frames.h"
 #include "tassilo/base/contract.h"
 #include "tassilo/base/kernel.h"
@@ -20,35 +23,27 @@
 #include "tassilo/region/morphology.h"
 #include "tassilo/region/raster.h"
 
-#ifdef TASSILO_BENCH_OPENCV
-#include <opencv2/imgproc.hpp>
-#endif
-#ifdef TASSILO_BENCH_LEPTONICA
-#include <allheaders.h>
-#endif
-
-namespace tassilo {
+namespace tassilo::bench {
 namespace {
 
 using test::bench_frames;
 using test::BenchFrames;
 
-/// One class of every frame, as a region and as what the others take.
+/// One class of every frame.
 struct Masks {
+  std::string name;
   PixelBox box;
   std::vector<Region> regions;
-  std::vector<std::vector<std::uint8_t>> bytes;  ///< 255 inside.
 };
-const Masks& carpet(int frames_index) {
+const Masks& carpet(const benchmark::State& state) {
   static std::map<int, Masks> made;
-  if (const auto it = made.find(frames_index); it != made.end()) return it->second;
-  const BenchFrames& frames = bench_frames(frames_index);
-  Masks masks{{0, 0, frames.width(), frames.height()}, {}, {}};
-  for (const Frame& frame : frames.frames) {
+  const int index = static_cast<int>(state.range(0));
+  if (const auto it = made.find(index); it != made.end()) return it->second;
+  const BenchFrames& frames = bench_frames(index);
+  Masks masks{frames.name, {0, 0, frames.width(), frames.height()}, {}};
+  for (const Frame& frame : frames.frames)
     masks.regions.push_back(segment(frame.view, frames.classifier).of(ColorClass::green));
-    masks.bytes.push_back(to_mask(masks.regions.back(), masks.box));
-  }
-  return made[frames_index] = std::move(masks);
+  return made[index] = std::move(masks);
 }
 
 struct Task {
@@ -65,82 +60,126 @@ const std::vector<Task>& tasks() {
   return all;
 }
 
-void set_label(benchmark::State& state) { state.SetLabel(bench_frames(static_cast<int>(state.range(0))).name); }
+/// Theirs(k) must be the task of mask k, as far as the image reaches.
+template <class Theirs>
+void compare(const benchmark::State& state, const std::string& name, const Task& task, Theirs theirs) {
+  once(task.name + name + std::to_string(state.range(0)), [&] {
+    const Masks& masks = carpet(state);
+    for (std::size_t k = 0; k < masks.regions.size(); ++k)
+      expects(theirs(k) == clipped(task(masks.regions[k]), masks.box), "the other library finds the same region");
+  });
+}
 
-void BM_Ours(benchmark::State& state, const Task* task, Kernel kernel) {
+void report_runs(benchmark::State& state, const Masks& masks) {
+  std::size_t runs = 0;
+  for (const Region& region : masks.regions) runs += region.runs().size();
+  const double a_mask = static_cast<double>(runs) / static_cast<double>(masks.regions.size());
+  state.counters["runs"] = a_mask;
+  state.counters["ns_a_run"] = 1e3 * state.counters["us"] / a_mask;
+  state.SetItemsProcessed(static_cast<std::int64_t>(static_cast<double>(state.iterations()) * a_mask));
+  state.SetLabel(masks.name);
+}
+
+void ours(benchmark::State& state, const Task& task, Kernel kernel) {
+  const Masks& masks = carpet(state);
+  once(task.name + std::string(to_string(kernel)) + std::to_string(state.range(0)), [&] {
+    for (const Region& region : masks.regions) {
+      use_kernel(Kernel::plain);
+      const Region plain = task(region);
+      use_kernel(kernel);
+      expects(plain == task(region), "a kernel equals the plain one");
+    }
+  });
   use_kernel(kernel);
-  const Masks& masks = carpet(static_cast<int>(state.range(0)));
-  std::size_t next = 0;
-  for (auto _ : state) benchmark::DoNotOptimize((*task)(masks.regions[next++ % masks.regions.size()]));
-  state.counters["runs"] = static_cast<double>(masks.regions[0].runs().size());
-  set_label(state);
+  measure(state, masks.regions.size(), [&](std::size_t k) { benchmark::DoNotOptimize(task(masks.regions[k])); });
+  report_runs(state, masks);
 }
 
-void BM_OurComponents(benchmark::State& state) {
-  const Masks& masks = carpet(static_cast<int>(state.range(0)));
-  std::size_t next = 0, runs = 0;
-  for (auto _ : state) {
-    const Region& region = masks.regions[next++ % masks.regions.size()];
-    benchmark::DoNotOptimize(component_features(region));
-    runs += region.runs().size();
+void our_components(benchmark::State& state) {
+  const Masks& masks = carpet(state);
+  measure(state, masks.regions.size(),
+          [&](std::size_t k) { benchmark::DoNotOptimize(component_features(masks.regions[k])); });
+  report_runs(state, masks);
+}
+
+#if defined(TASSILO_BENCH_OPENCV) || defined(TASSILO_BENCH_LEPTONICA)
+
+/// Components in an order that all libraries agree on.
+void sort_components(RecycledVector<ComponentFeatures>& parts) {
+  std::ranges::sort(parts, {}, [](const ComponentFeatures& part) {
+    return std::tuple(part.box.y0, part.box.x0, part.box.y1, part.box.x1, part.area, part.center.x, part.center.y);
+  });
+}
+/// A library that only tells the boxes leaves areas 0.
+void expect_same(RecycledVector<ComponentFeatures> theirs, RecycledVector<ComponentFeatures> ours) {
+  sort_components(theirs);
+  sort_components(ours);
+  expects(theirs.size() == ours.size(), "the other library finds as many components");
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    expects(theirs[i].box == ours[i].box, "the other library finds the same boxes");
+    if (theirs[i].area == 0) continue;
+    expects(theirs[i].area == ours[i].area && std::abs(theirs[i].center.x - ours[i].center.x) < 1e-6 &&
+                std::abs(theirs[i].center.y - ours[i].center.y) < 1e-6,
+            "the other library finds the same areas and centers");
   }
-  state.SetItemsProcessed(static_cast<std::int64_t>(runs));  // runs a second
-  set_label(state);
 }
 
+#endif
 #ifdef TASSILO_BENCH_OPENCV
-cv::Mat mat_of(const Masks& masks, std::size_t i) {
-  return {masks.box.height(), masks.box.width(), CV_8UC1, const_cast<std::uint8_t*>(masks.bytes[i].data())};
-}
-cv::Mat element_of(const Region& element) {
-  // Symmetric elements, so that the anchor in the middle is the origin.
-  const PixelBox box = bounding_box(element);
-  cv::Mat mat(box.height(), box.width(), CV_8UC1);
-  const auto bytes = to_mask(element, box, 1);
-  std::copy(bytes.begin(), bytes.end(), mat.data);
-  return mat;
+
+std::vector<cv::Mat> mats_of(const Masks& masks) {
+  cv::setNumThreads(1);
+  std::vector<cv::Mat> mats;
+  for (const Region& region : masks.regions) mats.push_back(mat_of(region, masks.box));
+  return mats;
 }
 
-void BM_OpenCv(benchmark::State& state, const Task* task) {
-  cv::setNumThreads(1);
-  const Masks& masks = carpet(static_cast<int>(state.range(0)));
-  const cv::Mat element = element_of(task->element);
+void opencv(benchmark::State& state, const Task& task) {
+  const Masks& masks = carpet(state);
+  const std::vector<cv::Mat> mats = mats_of(masks);
+  const CvElement element(task.element);
   cv::Mat to;
-  const auto run = [&](std::size_t i) {
-    // The outside is background, as for us.
-    if (task->opens)
-      cv::morphologyEx(mat_of(masks, i), to, cv::MORPH_OPEN, element, {-1, -1}, 1, cv::BORDER_CONSTANT, cv::Scalar(0));
+  // The outside is background, as for us.
+  const auto run = [&](std::size_t k) {
+    if (task.opens)
+      cv::morphologyEx(mats[k], to, cv::MORPH_OPEN, element.mat, element.anchor, 1, cv::BORDER_CONSTANT, cv::Scalar(0));
     else
-      cv::dilate(mat_of(masks, i), to, element, {-1, -1}, 1, cv::BORDER_CONSTANT, cv::Scalar(0));
+      cv::dilate(mats[k], to, element.mat, element.anchor, 1, cv::BORDER_CONSTANT, cv::Scalar(0));
   };
-  for (std::size_t i = 0; i < masks.regions.size(); ++i) {
-    run(i);
-    const Region ours = clipped((*task)(masks.regions[i]), masks.box);
-    expects(region_where({to.data, to.cols, to.rows, static_cast<std::ptrdiff_t>(to.step)},
-                         [](int byte) { return byte != 0; }) == ours,
-            "OpenCV finds the same region");
-  }
-  std::size_t next = 0;
-  for (auto _ : state) run(next++ % masks.regions.size());
-  set_label(state);
+  compare(state, "opencv", task, [&](std::size_t k) {
+    run(k);
+    return region_of(to);
+  });
+  measure(state, mats.size(), run);
+  report_runs(state, masks);
 }
 
-void BM_OpenCvComponents(benchmark::State& state) {
-  cv::setNumThreads(1);
-  const Masks& masks = carpet(static_cast<int>(state.range(0)));
+void opencv_components(benchmark::State& state) {
+  const Masks& masks = carpet(state);
+  const std::vector<cv::Mat> mats = mats_of(masks);
   cv::Mat labels, stats, centers;
-  std::size_t next = 0;
-  for (std::size_t i = 0; i < masks.regions.size(); ++i)
-    expects(cv::connectedComponentsWithStats(mat_of(masks, i), labels, stats, centers, 8) - 1 ==
-                static_cast<int>(component_features(masks.regions[i]).size()),
-            "OpenCV finds as many components");
-  for (auto _ : state)
-    cv::connectedComponentsWithStats(mat_of(masks, next++ % masks.regions.size()), labels, stats, centers, 8);
-  set_label(state);
+  const auto run = [&](std::size_t k) { cv::connectedComponentsWithStats(mats[k], labels, stats, centers, 8); };
+  once("components/opencv" + std::to_string(state.range(0)), [&] {
+    for (std::size_t k = 0; k < mats.size(); ++k) {
+      run(k);
+      RecycledVector<ComponentFeatures> theirs;
+      for (int i = 1; i < stats.rows; ++i) {  // 0 is the background
+        const int* const stat = stats.ptr<int>(i);
+        const int x = stat[cv::CC_STAT_LEFT], y = stat[cv::CC_STAT_TOP];
+        theirs.push_back({stat[cv::CC_STAT_AREA],
+                          {centers.at<double>(i, 0), centers.at<double>(i, 1)},
+                          {x, y, x + stat[cv::CC_STAT_WIDTH], y + stat[cv::CC_STAT_HEIGHT]}});
+      }
+      expect_same(std::move(theirs), component_features(masks.regions[k]));
+    }
+  });
+  measure(state, mats.size(), run);
+  report_runs(state, masks);
 }
 
-/// What many write: convert to HSV, then for each of eight colors threshold, open, label.
-void BM_OpenCvChain(benchmark::State& state) {
+/// What many write: convert to HSV, then for each of eight colors threshold, open, label. Its classes are others than
+/// ours, so only the time can be compared.
+void opencv_chain(benchmark::State& state) {
   cv::setNumThreads(1);
   const BenchFrames& frames = bench_frames(static_cast<int>(state.range(0)));
   const int width = frames.width(), height = frames.height();
@@ -154,21 +193,20 @@ void BM_OpenCvChain(benchmark::State& state) {
   }
   const cv::Mat element = cv::Mat::ones(3, 3, CV_8UC1);
   cv::Mat bgr, hsv, mask, opened, labels, stats, centers;
-  std::size_t next = 0;
-  for (auto _ : state) {
-    cv::cvtColor(images[next++ % images.size()], bgr, cv::COLOR_YUV2BGR_YUYV);
+  measure(state, images.size(), [&](std::size_t k) {
+    cv::cvtColor(images[k], bgr, cv::COLOR_YUV2BGR_YUYV);
     cv::cvtColor(bgr, hsv, cv::COLOR_BGR2HSV);
     for (int color = 0; color < 8; ++color) {
       cv::inRange(hsv, cv::Scalar(color * 22, 60, 40), cv::Scalar(color * 22 + 22, 255, 255), mask);
       cv::morphologyEx(mask, opened, cv::MORPH_OPEN, element);
       cv::connectedComponentsWithStats(opened, labels, stats, centers, 8);
     }
-  }
-  set_label(state);
+  });
+  frames.report(state);
 }
 
 /// What an expert writes who has the labels already: for each class compare, open, follow contours.
-void BM_OpenCvExpertChain(benchmark::State& state) {
+void opencv_expert_chain(benchmark::State& state) {
   cv::setNumThreads(1);
   const BenchFrames& frames = bench_frames(static_cast<int>(state.range(0)));
   std::vector<Segmentation> segmented;
@@ -176,85 +214,130 @@ void BM_OpenCvExpertChain(benchmark::State& state) {
   const cv::Mat element = cv::Mat::ones(3, 3, CV_8UC1);
   cv::Mat mask, opened;
   std::vector<std::vector<cv::Point>> contours;
-  std::size_t next = 0;
-  for (auto _ : state) {
-    Segmentation& labels = segmented[next++ % segmented.size()];
-    const cv::Mat image(labels.height, labels.width, CV_8UC1, labels.labels.data());
-    for (int color = 1; color <= 8; ++color) {
-      cv::compare(image, color, mask, cv::CMP_EQ);
-      cv::morphologyEx(mask, opened, cv::MORPH_OPEN, element);
+  const auto open = [&](std::size_t k, int color) {
+    Segmentation& labels = segmented[k];
+    cv::compare(cv::Mat(labels.height, labels.width, CV_8UC1, labels.labels.data()), color, mask, cv::CMP_EQ);
+    cv::morphologyEx(mask, opened, cv::MORPH_OPEN, element, {-1, -1}, 1, cv::BORDER_CONSTANT, cv::Scalar(0));
+  };
+  once("chain/opencv_expert" + std::to_string(state.range(0)), [&] {
+    for (std::size_t k = 0; k < segmented.size(); ++k) {
+      const Segmentation ours = segment_opened(frames.frames[k].view, frames.classifier);
+      for (const ColorClass color : kColorClasses) {
+        open(k, class_index(color) + 1);
+        expects(region_of(opened) == ours.of(color), "OpenCV finds the same opened class");
+      }
+    }
+  });
+  measure(state, segmented.size(), [&](std::size_t k) {
+    for (int color = 1; color <= kColorClassCount; ++color) {
+      open(k, color);
       cv::findContours(opened, contours, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_SIMPLE);
       for (const auto& contour : contours) benchmark::DoNotOptimize(cv::boundingRect(contour));
     }
-  }
-  set_label(state);
+  });
+  frames.report(state);
 }
+
 #endif
+#ifdef TASSILO_BENCH_XIMGPROC
 
-#ifdef TASSILO_BENCH_LEPTONICA
-struct PixDelete {
-  void operator()(PIX* pix) const { pixDestroy(&pix); }
-};
-using Pix = std::unique_ptr<PIX, PixDelete>;
-
-void BM_Leptonica(benchmark::State& state, const Task* task) {
-  const Masks& masks = carpet(static_cast<int>(state.range(0)));
-  std::vector<Pix> images;
-  for (const Region& region : masks.regions) {
-    images.emplace_back(pixCreate(masks.box.width(), masks.box.height(), 1));
-    for (const PixelRun& run : region.runs())
-      for (int c = run.begin; c < run.end; ++c) pixSetPixel(images.back().get(), c, run.row, 1);
-  }
-  const PixelBox box = bounding_box(task->element);
-  const auto bytes = to_mask(task->element, box, 1);
-  SEL* sel = selCreate(box.height(), box.width(), "element");
-  selSetOrigin(sel, -box.y0, -box.x0);
-  for (int r = 0; r < box.height(); ++r)
-    for (int c = 0; c < box.width(); ++c)
-      selSetElement(sel, r, c, bytes[static_cast<std::size_t>(r * box.width() + c)] ? SEL_HIT : SEL_DONT_CARE);
-  const bool brick = area(task->element) == box.area();
-  std::size_t next = 0;
-  for (auto _ : state) {
-    PIX* from = images[next++ % images.size()].get();
-    const Pix to(brick         ? pixOpenBrick(nullptr, from, box.width(), box.height())
-                 : task->opens ? pixOpen(nullptr, from, sel)
-                               : pixDilate(nullptr, from, sel));
-    benchmark::DoNotOptimize(to.get());
-  }
-  selDestroy(&sel);
-  set_label(state);
-}
-#endif
-
-void register_all() {
-  const auto at_sizes = [](const std::string& name, auto... what) {
-    // 640x480 and 1920x1080
-    benchmark::RegisterBenchmark(name.c_str(), what...)->Arg(3)->Arg(5)->Unit(benchmark::kMicrosecond);
+void ximgproc(benchmark::State& state, const Task& task) {
+  const Masks& masks = carpet(state);
+  const cv::Size size(masks.box.width(), masks.box.height());
+  std::vector<cv::Mat> images;
+  for (const Region& region : masks.regions) images.push_back(rl_of(region, size));
+  const cv::Mat element = rl_of(task.element, {});
+  expects(cv::ximgproc::rl::isRLMorphologyPossible(element), "ximgproc::rl can work with the element");
+  cv::Mat eroded, to;
+  const auto run = [&](std::size_t k) {
+    if (task.opens) cv::ximgproc::rl::erode(images[k], eroded, element, false);
+    cv::ximgproc::rl::dilate(task.opens ? eroded : images[k], to, element);
   };
-  for (const Task& task : tasks()) {
-    for (const Kernel kernel : supported_kernels())
-      at_sizes(task.name + "/" + std::string(to_string(kernel)), BM_Ours, &task, kernel);
-#ifdef TASSILO_BENCH_OPENCV
-    at_sizes(task.name + "/opencv", BM_OpenCv, &task);
+  compare(state, "ximgproc_rl", task, [&](std::size_t k) {
+    run(k);
+    return region_of_rl(to, size);
+  });
+  measure(state, images.size(), run);
+  report_runs(state, masks);
+}
+
 #endif
 #ifdef TASSILO_BENCH_LEPTONICA
-    at_sizes(task.name + "/leptonica", BM_Leptonica, &task);
-#endif
-  }
-  at_sizes("components/ours", BM_OurComponents);
-#ifdef TASSILO_BENCH_OPENCV
-  at_sizes("components/opencv", BM_OpenCvComponents);
-  at_sizes("chain/opencv", BM_OpenCvChain);
-  at_sizes("chain/opencv_expert", BM_OpenCvExpertChain);
-#endif
+
+std::vector<Pix> pixes_of(const Masks& masks) {
+  std::vector<Pix> pixes;
+  for (const Region& region : masks.regions) pixes.push_back(pix_of(region, masks.box));
+  return pixes;
 }
+
+void leptonica(benchmark::State& state, const Task& task) {
+  const Masks& masks = carpet(state);
+  const std::vector<Pix> pixes = pixes_of(masks);
+  const PixelBox box = bounding_box(task.element);
+  const Sel sel = sel_of(task.element);
+  const bool brick = area(task.element) == box.area();
+  const auto run = [&](std::size_t k) {
+    PIX* const from = pixes[k].get();
+    return Pix(brick        ? pixOpenBrick(nullptr, from, box.width(), box.height())
+               : task.opens ? pixOpen(nullptr, from, sel.get())
+                            : pixDilate(nullptr, from, sel.get()));
+  };
+  compare(state, "leptonica", task, [&](std::size_t k) { return region_of(run(k).get()); });
+  measure(state, pixes.size(), [&](std::size_t k) { benchmark::DoNotOptimize(run(k).get()); });
+  report_runs(state, masks);
+}
+
+/// Boxes only.
+void leptonica_components(benchmark::State& state) {
+  const Masks& masks = carpet(state);
+  const std::vector<Pix> pixes = pixes_of(masks);
+  const auto run = [&](std::size_t k) { return Boxa(pixConnCompBB(pixes[k].get(), 8)); };
+  once("components/leptonica" + std::to_string(state.range(0)), [&] {
+    for (std::size_t k = 0; k < pixes.size(); ++k) {
+      const Boxa boxes = run(k);
+      RecycledVector<ComponentFeatures> theirs, ours = component_features(masks.regions[k]);
+      for (int i = 0; i < boxaGetCount(boxes.get()); ++i) {
+        int x = 0, y = 0, width = 0, height = 0;
+        boxaGetBoxGeometry(boxes.get(), i, &x, &y, &width, &height);
+        theirs.push_back({0, {}, {x, y, x + width, y + height}});
+      }
+      expect_same(std::move(theirs), std::move(ours));
+    }
+  });
+  measure(state, pixes.size(), [&](std::size_t k) { benchmark::DoNotOptimize(run(k).get()); });
+  report_runs(state, masks);
+}
+
+#endif
 
 }  // namespace
-}  // namespace tassilo
 
-int main(int argc, char** argv) {
-  tassilo::register_all();
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
-  benchmark::RunSpecifiedBenchmarks();
+void register_benchmarks() {
+  const std::vector<int> sizes{3, 5};  // 640x480 and 1920x1080
+  add_yardsticks(sizes);
+  for (const Task& task : tasks()) {
+    for (const Kernel kernel : supported_kernels())
+      add(task.name + "/" + std::string(to_string(kernel)), sizes,
+          [&task, kernel](benchmark::State& state) { ours(state, task, kernel); });
+#ifdef TASSILO_BENCH_OPENCV
+    add(task.name + "/opencv", sizes, [&task](benchmark::State& state) { opencv(state, task); });
+#endif
+#ifdef TASSILO_BENCH_XIMGPROC
+    add(task.name + "/ximgproc_rl", sizes, [&task](benchmark::State& state) { ximgproc(state, task); });
+#endif
+#ifdef TASSILO_BENCH_LEPTONICA
+    add(task.name + "/leptonica", sizes, [&task](benchmark::State& state) { leptonica(state, task); });
+#endif
+  }
+  add("components/ours", sizes, our_components);
+#ifdef TASSILO_BENCH_OPENCV
+  add("components/opencv", sizes, opencv_components);
+  add("chain/opencv", sizes, opencv_chain);
+  add("chain/opencv_expert", sizes, opencv_expert_chain);
+#endif
+#ifdef TASSILO_BENCH_LEPTONICA
+  add("components/leptonica", sizes, leptonica_components);
+#endif
 }
+
+}  // namespace tassilo::bench

@@ -1,15 +1,13 @@
 #include "support/bench_frames.h"
 
-#include <time.h>
-
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <random>
 
+#include "support/measure.h"
 #include "support/recording.h"
-#include "tassilo/base/contract.h"
-#include "tassilo/base/median.h"
 
 namespace tassilo::test {
 namespace {
@@ -103,13 +101,6 @@ ColorTable with_ragged_rims(const ColorTable& smooth, std::mt19937& random) {
   return table;
 }
 
-/// Time this thread has worked, as the benchmarks count: others may want the core, too.
-double thread_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
 BenchFrames load(const Kind& kind) {
   std::mt19937 random(1);
   std::vector<Frame> frames;
@@ -160,24 +151,39 @@ void BenchFrames::scalar_reference(const Frame& frame) const {
   benchmark::ClobberMemory();
 }
 
+void BenchFrames::copy(const Frame& frame) const {
+  static thread_local std::vector<std::uint8_t> to;
+  const FrameView& view = frame.view;
+  to.resize(static_cast<std::size_t>(2 * view.width() * view.height()));
+  std::uint8_t* next = to.data();
+  for (int r = 0; r < view.height(); ++r) {
+    const YuvRow row = view.row(r);
+    const auto width = static_cast<std::size_t>(view.width());
+    std::memcpy(next, row.y, width);
+    std::memcpy(next + width, row.u, width / 2);
+    std::memcpy(next + width + width / 2, row.v, width / 2);
+    next += 2 * width;
+  }
+  benchmark::DoNotOptimize(to.data());
+  benchmark::ClobberMemory();
+}
+
 double BenchFrames::reference_seconds() const {
   static std::map<std::string, double> known;
   if (const auto it = known.find(name); it != known.end()) return it->second;
-  std::vector<double> seconds;
-  std::size_t count = 0;
-  for (int i = 0; i < 400; ++i) {
-    const double start = thread_seconds();
-    scalar_reference(next(count));
-    seconds.push_back(thread_seconds() - start);
-  }
-  return known[name] = median(std::move(seconds));
+  PassTimer timer(frames.size());
+  for (int pass = 0; pass < 50; ++pass)
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+      scalar_reference(frames[timer.next()]);
+      timer.called();
+    }
+  return known[name] = timer.seconds();
 }
 
 void BenchFrames::report(benchmark::State& state) const {
   state.SetLabel(name);
   state.SetItemsProcessed(state.iterations() * width() * height());
-  state.counters["x_reference"] = benchmark::Counter(
-      reference_seconds(), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.counters["x_reference"] = state.counters["us"] / (1e6 * reference_seconds());
 }
 
 const BenchFrames& bench_frames(int index) {

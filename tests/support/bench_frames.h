@@ -20,14 +20,14 @@ struct BenchFrames {
 
   int width() const { return frames.front().view.width(); }
   int height() const { return frames.front().view.height(); }
-  /// Another frame each time: no branch predictor may learn one by heart.
-  const Frame& next(std::size_t& count) const { return frames[count++ % frames.size()]; }
 
   /// The denominator of all figures: one table lookup a pixel pair & one mask a pixel, a plain loop.
   void scalar_reference(const Frame& frame) const;
-  /// Median time of the scalar reference on these frames, measured once in this process. [s]
+  /// The other yardstick: memcpy of the frame, which varies with what is in the caches.
+  void copy(const Frame& frame) const;
+  /// Time of the scalar reference on these frames, measured once in this process. [s]
   double reference_seconds() const;
-  /// Label, pixels a second, and `x_reference`: time as a part of the scalar reference's.
+  /// Label, pixels a second, and `x_reference`: the counter `us` of `measure` as a part of the scalar reference's.
   void report(benchmark::State& state) const;
 };
 
