@@ -1,25 +1,28 @@
 #!/usr/bin/env bash
 # Installs what building, testing and running Tassilo needs, and nothing when it is all there.
-# usage: tools/install_deps.sh [--references] [--help]
+# usage: tools/install_deps.sh [--references] [--benchmarks] [--help]
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 usage() {
   cat <<'EOF'
-usage: tools/install_deps.sh [--references]
+usage: tools/install_deps.sh [--references] [--benchmarks]
   Installs the missing packages through apt-get (tested on Debian 12; about 300 MB to download on
   a bare machine) and the web UI's packages through npm where webui/ exists. Does nothing when nothing is missing.
   --references  also clang (for fuzzing), the OpenCV modules that some tests compare with, and Leptonica, with which a
                 benchmark does (about 80 MB more); without them those tests are skipped and listed.
                 And what builds for aarch64 and runs it here: cross compiler, qemu-user, GoogleTest's source
                 (about 70 MB)
+  --benchmarks  also what bench/report compares with: OpenCV with the run lengths of its extra modules
+                (ximgproc::rl), and Leptonica (about 150 MB more); what is missing leaves its columns empty
 EOF
 }
 
-references=0
+references=0 benchmarks=0
 for argument in "$@"; do
   case "$argument" in
     --references) references=1 ;;
+    --benchmarks) benchmarks=1 ;;
     -h | --help) usage; exit 0 ;;
     *) usage >&2; exit 2 ;;
   esac
@@ -34,9 +37,10 @@ packages=(
   clang-format python3 python3-numpy python3-jsonschema ffmpeg
   pybind11-dev python3-dev python3-pytest
 )
-# imgproc and calib3d alone: the whole libopencv-dev is twice as large.
+# imgproc and calib3d alone: the whole libopencv-dev is twice as large, and libopencv-contrib-dev brings nearly all of it.
 if [ "$references" = 1 ]; then packages+=(clang libopencv-imgproc-dev libopencv-calib3d-dev libleptonica-dev); fi
 if [ "$references" = 1 ]; then packages+=(g++-aarch64-linux-gnu qemu-user googletest); fi
+if [ "$benchmarks" = 1 ]; then packages+=(libopencv-imgproc-dev libopencv-contrib-dev libleptonica-dev); fi
 if [ -d webui ]; then packages+=(nodejs npm); fi
 
 is_installed() { dpkg-query --show --showformat='${db:Status-Status}\n' "$1" 2>/dev/null | grep -qx installed; }
