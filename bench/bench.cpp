@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "support/bench_frames.h"
+#include "tassilo/region/components.h"
 
 namespace tassilo::bench {
 
@@ -23,6 +24,12 @@ void add_yardsticks(const std::vector<int>& frames) {
   };
   yardstick("memcpy", &test::BenchFrames::copy);
   yardstick("scalar_reference", &test::BenchFrames::scalar_reference);
+}
+
+Segmentation chain(const Frame& frame, const Classifier& classifier, Segmentation recycled) {
+  recycled = segment_opened(frame.view, classifier, std::move(recycled));
+  for (const ColorClass color : kColorClasses) benchmark::DoNotOptimize(component_features(recycled.of(color)).data());
+  return recycled;
 }
 
 void once(const std::string& name, const std::function<void()>& check) {

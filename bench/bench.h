@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "support/measure.h"
+#include "tassilo/color/segment.h"
 
 // What all benchmarks share. A benchmark's names are task/contender/argument: bench/report reads them.
 
@@ -22,6 +23,9 @@ void add(const std::string& name, const std::vector<int>& arguments, std::functi
 
 /// memcpy/argument and scalar_reference/argument: what every figure of the process can be held against.
 void add_yardsticks(const std::vector<int>& frames);
+
+/// The full chain: frame -> 8 classes, opened by 3 x 3, 8-connected components, area, centre and box of each.
+Segmentation chain(const Frame& frame, const Classifier& classifier, Segmentation recycled);
 
 /// The library calls a benchmark several times until it has run for long enough: `check` runs in the first call with
 /// that name only.

@@ -102,6 +102,15 @@ void our_components(benchmark::State& state) {
   report_runs(state, masks);
 }
 
+void our_chain(benchmark::State& state) {
+  const BenchFrames& frames = bench_frames(static_cast<int>(state.range(0)));
+  use_kernel(supported_kernels().back());
+  Segmentation opened;
+  measure(state, frames.frames.size(),
+          [&](std::size_t k) { opened = chain(frames.frames[k], frames.classifier, std::move(opened)); });
+  frames.report(state);
+}
+
 #if defined(TASSILO_BENCH_OPENCV) || defined(TASSILO_BENCH_LEPTONICA)
 
 /// Components in an order that all libraries agree on.
@@ -330,6 +339,7 @@ void register_benchmarks() {
 #endif
   }
   add("components/ours", sizes, our_components);
+  add("chain/ours", sizes, our_chain);
 #ifdef TASSILO_BENCH_OPENCV
   add("components/opencv", sizes, opencv_components);
   add("chain/opencv", sizes, opencv_chain);

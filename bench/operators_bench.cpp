@@ -1,8 +1,8 @@
 // What does each operator on regions cost a run, on a dense and on a sparse region of three sizes? bench/report fits
-// time = a + b runs, and the power of the number of runs that the time of dense regions grows with. The dense region is
-// the carpet of a painted noisy scene, the sparse one its red ball and goal, frames cycled. Before any time counts the
-// regions that the fastest kernel gives are compared with those of the plain one; all else is left to the tests.
-// memcpy and the scalar reference run in the same process.
+// costs of a call, a run and a pixel, and the power of the number of runs that the time of dense regions grows with.
+// The dense region is the carpet of a painted noisy scene, the sparse one its red ball and goal, frames cycled. Before
+// any time counts the regions that the fastest kernel gives are compared with those of the plain one; all else is left
+// to the tests. memcpy and the scalar reference run in the same process.
 
 #include <cstdint>
 #include <map>
@@ -110,9 +110,15 @@ void add_operator(const std::string& name, Call call) {
         });
       use_kernel(fastest);
       measure(state, inputs.size(), [&](std::size_t k) { benchmark::DoNotOptimize(call(inputs[k])); });
-      double runs = 0;
-      for (const Input& input : inputs) runs += static_cast<double>(input.region.runs().size());
+      double runs = 0, box_pixels = 0;
+      for (const Input& input : inputs) {
+        runs += static_cast<double>(input.region.runs().size());
+        const PixelBox box = bounding_box(input.region);
+        box_pixels += box.width() * box.height();
+      }
       state.counters["runs"] = runs / static_cast<double>(inputs.size());
+      state.counters["box_pixels"] = box_pixels / static_cast<double>(inputs.size());
+      state.counters["pixels"] = inputs[0].window.width() * inputs[0].window.height();
       state.counters["ns_a_run"] = 1e3 * state.counters["us"] / state.counters["runs"];
       state.SetLabel(test::bench_frames(index).name);
     });
@@ -162,7 +168,7 @@ void add_morphology() {
   add_operator("hit or miss, left rim", [=](const Input& in) { return hit_or_miss(in.region, hit, miss); });
   add_operator("inner boundary", [](const Input& in) { return inner_boundary(in.region); });
   add_operator("outer boundary", [](const Input& in) { return outer_boundary(in.region); });
-  add_operator("remove noise, 8", [](const Input& in) { return remove_noise(in.region, NoiseNeighbors::n_48); });
+  add_operator("remove noise", [](const Input& in) { return remove_noise(in.region, NoiseNeighbors::n_48); });
   add_operator("fill holes", [](const Input& in) { return fill_holes(in.region); });
   add_operator("fill up, round holes", [](const Input& in) {
     const FeatureRange round{.feature = Feature::circularity, .min = .5};

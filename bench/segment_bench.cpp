@@ -14,7 +14,6 @@
 #include "tassilo/base/contract.h"
 #include "tassilo/base/kernel.h"
 #include "tassilo/color/segment.h"
-#include "tassilo/region/components.h"
 #include "tassilo/region/morphology.h"
 
 namespace tassilo::bench {
@@ -75,8 +74,7 @@ void opening_all(benchmark::State& state, Kernel kernel) {
   frames.report(state);
 }
 
-/// Frame -> 8 classes, opened by 3 x 3, 8-connected components, area, centre and box of each.
-void chain(benchmark::State& state, Kernel kernel) {
+void chains(benchmark::State& state, Kernel kernel) {
   const test::BenchFrames& frames = frames_of(state);
   use_kernel(kernel);
   Segmentation opened;
@@ -87,10 +85,8 @@ void chain(benchmark::State& state, Kernel kernel) {
               "segmentation opened at once is one opened afterwards");
     }
   });
-  measure(state, frames.frames.size(), [&](std::size_t k) {
-    opened = segment_opened(frames.frames[k].view, frames.classifier, std::move(opened));
-    for (const ColorClass color : kColorClasses) benchmark::DoNotOptimize(component_features(opened.of(color)).data());
-  });
+  measure(state, frames.frames.size(),
+          [&](std::size_t k) { opened = chain(frames.frames[k], frames.classifier, std::move(opened)); });
   frames.report(state);
 }
 
@@ -104,7 +100,7 @@ void register_benchmarks() {
     const std::string name(to_string(kernel));
     add("segment/" + name, all, [kernel](benchmark::State& state) { segmenting(state, kernel); });
     add("opening3x3/" + name, all, [kernel](benchmark::State& state) { opening_all(state, kernel); });
-    add("chain/" + name, all, [kernel](benchmark::State& state) { chain(state, kernel); });
+    add("chain/" + name, all, [kernel](benchmark::State& state) { chains(state, kernel); });
   }
 }
 
