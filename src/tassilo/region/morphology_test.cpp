@@ -154,6 +154,22 @@ TEST(Morphology, IsTheSameOnRunsAndOnBitPlanesForEveryKernel) {
   }
 }
 
+// Planes are made and read in bands of 4096 words; here there are three.
+TEST(Morphology, IsTheSameOnBitPlanesOfSeveralBands) {
+  const Kernel before = kernel_in_use();
+  const Region region = random_region(7, {{-300, 5, 400, 905}, .9, 0});
+  const Region far_away = Region::from_box({20000, 9000, 20001, 9001});
+  for (const Region& element : {rectangle(3, 3), disc(2.5)}) {
+    const Region opened = difference(opening(union_of(region, far_away), element), far_away);
+    for (const Kernel kernel : supported_kernels()) {
+      SCOPED_TRACE(std::string(to_string(kernel)));
+      use_kernel(kernel);
+      EXPECT_EQ(opening(region, element), opened);
+    }
+    use_kernel(before);
+  }
+}
+
 TEST(MorphologyDeathTest, LeavingSixteenBitStopsOnBitPlanesToo) {
   RunVector runs;
   for (int r = 0; r < 40; ++r)

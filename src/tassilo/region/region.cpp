@@ -1,6 +1,8 @@
 #include "tassilo/region/region.h"
 
 #include <algorithm>
+#include <array>
+#include <cstring>
 #include <limits>
 
 #include "tassilo/base/contract.h"
@@ -58,10 +60,28 @@ std::int64_t area(const Region& region) {
 PixelBox bounding_box(const Region& region) {
   const auto runs = region.runs();
   if (runs.empty()) return {};
+  // Eight runs at a time as a row of numbers, of which every third is a begin, the next one an end.
+  constexpr std::size_t kRuns = 8;
+  std::array<std::int16_t, 3 * kRuns> least, most, numbers;
+  static_assert(sizeof(PixelRun) * kRuns == sizeof numbers);
+  least.fill(std::numeric_limits<std::int16_t>::max());
+  most.fill(std::numeric_limits<std::int16_t>::min());
+  std::size_t k = 0;
+  for (; k + kRuns <= runs.size(); k += kRuns) {
+    std::memcpy(numbers.data(), runs.data() + k, sizeof numbers);
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      least[i] = std::min(least[i], numbers[i]);
+      most[i] = std::max(most[i], numbers[i]);
+    }
+  }
   PixelBox box{std::numeric_limits<int>::max(), runs.front().row, std::numeric_limits<int>::min(), runs.back().row + 1};
-  for (const PixelRun& run : runs) {
-    box.x0 = std::min<int>(box.x0, run.begin);
-    box.x1 = std::max<int>(box.x1, run.end);
+  for (std::size_t i = 0; k >= kRuns && i < kRuns; ++i) {
+    box.x0 = std::min<int>(box.x0, least[3 * i + 1]);
+    box.x1 = std::max<int>(box.x1, most[3 * i + 2]);
+  }
+  for (; k < runs.size(); ++k) {
+    box.x0 = std::min<int>(box.x0, runs[k].begin);
+    box.x1 = std::max<int>(box.x1, runs[k].end);
   }
   return box;
 }

@@ -9,13 +9,37 @@
 
 #include "tassilo/base/kernel_targets.h"
 #include "tassilo/color/internal/color_kernel.h"
+#define TASSILO_ROW_TARGET TASSILO_AVX2
+#include "tassilo/color/internal/row_loops.h"
 
 namespace tassilo {
 namespace {
 
-TASSILO_AVX2 inline __m256i load(const std::uint8_t* from) {
-  return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
-}
+/// Of row_loops.h.
+struct Bytes {
+  using Vector = __m256i;
+  static constexpr int kSize = 32, kBitsPerByte = 1;
+
+  TASSILO_AVX2 static Vector zero() { return _mm256_setzero_si256(); }
+  TASSILO_AVX2 static Vector load(const std::uint8_t* from) {
+    return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
+  }
+  TASSILO_AVX2 static void store(std::uint8_t* to, Vector v) { _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), v); }
+  TASSILO_AVX2 static Vector left_of(Vector before, Vector here) {
+    return _mm256_alignr_epi8(here, _mm256_permute2x128_si256(before, here, 0x21), 15);
+  }
+  TASSILO_AVX2 static Vector right_of(Vector here, Vector after) {
+    return _mm256_alignr_epi8(_mm256_permute2x128_si256(here, after, 0x21), here, 1);
+  }
+  TASSILO_AVX2 static Vector same(Vector a, Vector b, Vector c) {
+    return _mm256_and_si256(b, _mm256_and_si256(_mm256_cmpeq_epi8(a, b), _mm256_cmpeq_epi8(c, b)));
+  }
+  TASSILO_AVX2 static Vector any(Vector a, Vector b, Vector c) { return _mm256_or_si256(b, _mm256_or_si256(a, c)); }
+  TASSILO_AVX2 static std::uint32_t changes(Vector a, Vector b) {
+    return ~static_cast<std::uint32_t>(_mm256_movemask_epi8(_mm256_cmpeq_epi8(a, b)));
+  }
+};
+
 TASSILO_AVX2 inline __m256i twice(const std::array<std::uint8_t, 16>& table) {
   return _mm256_broadcastsi128_si256(_mm_loadu_si128(reinterpret_cast<const __m128i*>(table.data())));
 }
@@ -64,31 +88,6 @@ TASSILO_AVX2 void claims_of(const KernelTable& table, const YuvRow& row, int pai
   plain_color_kernel.claims(table, rest, pairs - k, claims + k);
 }
 
-TASSILO_AVX2 int runs_of(const std::uint8_t* labels, int width, RowRuns runs) {
-  int count = 0;
-  std::uint8_t label = 0;  // of the run at work
-  const auto change = [&](int c, std::uint8_t to) {
-    runs.end[count] = static_cast<std::uint16_t>(c);
-    count += label != 0;
-    runs.begin[count] = static_cast<std::uint16_t>(c);
-    runs.label[count] = label = to;
-  };
-  if (width > 0 && labels[0] != 0) change(0, labels[0]);
-  int c = 1;
-  for (; c + 32 <= width; c += 32) {
-    const __m256i same = _mm256_cmpeq_epi8(load(labels + c), load(labels + c - 1));
-    auto changed = ~static_cast<std::uint32_t>(_mm256_movemask_epi8(same));
-    for (; changed != 0; changed &= changed - 1) {
-      const int at = c + __builtin_ctz(changed);
-      change(at, labels[at]);
-    }
-  }
-  for (; c < width; ++c)
-    if (labels[c] != labels[c - 1]) change(c, labels[c]);
-  if (width > 0 && label != 0) change(width, 0);
-  return count;
-}
-
 TASSILO_AVX2 int labels_of(const KernelTable& table, const std::uint8_t* claims, const YuvRow& of_row, int width,
                            std::uint8_t* labels, const RowRuns* runs) {
   const YuvRow row = of_row;  // not to be looked up again after every store of bytes, which might change it
@@ -96,18 +95,18 @@ TASSILO_AVX2 int labels_of(const KernelTable& table, const std::uint8_t* claims,
   const __m256i whole = twice(halves.whole), first = twice(halves.first), last = twice(halves.last),
                 both = twice(halves.both), from = twice(halves.from), to = twice(halves.to);
   const __m256i label_low = twice(halves.label_of_low), label_high = twice(halves.label_of_high);
-  const __m256i half_mask = _mm256_set1_epi8(15), zero = _mm256_setzero_si256();
+  const __m256i half_mask = _mm256_set1_epi8(15), zero = Bytes::zero();
   int c = 0;
   for (; c + 32 <= width; c += 32) {
     __m256i y;
     if (row.y_step == 1) {
-      y = load(row.y + c);
+      y = Bytes::load(row.y + c);
     } else {
       // Even bytes from where Y comes first, odd ones where it comes second; no byte behind the row is read.
       const bool y_first = row.y < row.u;
       const std::uint8_t* block = row.y + 2 * c - (y_first ? 0 : 1);
       const __m256i low_bytes = _mm256_set1_epi16(255);
-      __m256i a = load(block), b = load(block + 32);
+      __m256i a = Bytes::load(block), b = Bytes::load(block + 32);
       a = y_first ? _mm256_and_si256(a, low_bytes) : _mm256_srli_epi16(a, 8);
       b = y_first ? _mm256_and_si256(b, low_bytes) : _mm256_srli_epi16(b, 8);
       y = _mm256_permute4x64_epi64(_mm256_packus_epi16(a, b), 0xd8);
@@ -127,73 +126,16 @@ TASSILO_AVX2 int labels_of(const KernelTable& table, const std::uint8_t* claims,
     const __m256i upper = _mm256_and_si256(_mm256_srli_epi16(left, 4), half_mask);
     const __m256i label = _mm256_blendv_epi8(_mm256_shuffle_epi8(label_low, lower),
                                              _mm256_shuffle_epi8(label_high, upper), _mm256_cmpeq_epi8(lower, zero));
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(labels + c), label);
+    Bytes::store(labels + c, label);
   }
   const YuvRow rest{row.y + c * row.y_step, row.u, row.v, row.y_step, row.chroma_step};
   plain_color_kernel.labels(table, claims + c / 2, rest, width - c, labels + c, nullptr);
-  return runs == nullptr ? 0 : runs_of(labels, width, *runs);
-}
-
-/// The block of 32 bytes, of which those from `width` on are 0.
-TASSILO_AVX2 inline __m256i load_inside(const std::uint8_t* row, int c, int width) {
-  if (c + 32 <= width) return load(row + c);
-  std::array<std::uint8_t, 32> rest{};
-  for (int k = 0; k < width - c; ++k) rest[static_cast<std::size_t>(k)] = row[c + k];
-  return load(rest.data());
-}
-TASSILO_AVX2 inline __m256i left_of(__m256i before, __m256i here) {
-  return _mm256_alignr_epi8(here, _mm256_permute2x128_si256(before, here, 0x21), 15);
-}
-TASSILO_AVX2 inline __m256i right_of(__m256i here, __m256i after) {
-  return _mm256_alignr_epi8(_mm256_permute2x128_si256(here, after, 0x21), here, 1);
-}
-
-struct Erode {
-  TASSILO_AVX2 static __m256i join(__m256i a, __m256i b, __m256i c) {
-    return _mm256_and_si256(b, _mm256_and_si256(_mm256_cmpeq_epi8(a, b), _mm256_cmpeq_epi8(c, b)));
-  }
-};
-struct Dilate {
-  TASSILO_AVX2 static __m256i join(__m256i a, __m256i b, __m256i c) {
-    return _mm256_or_si256(b, _mm256_or_si256(a, c));
-  }
-};
-
-template <class Operation>
-TASSILO_AVX2 void over_nine(ThreeRows rows, int width, std::uint8_t* labels) {
-  const auto column = [&](int c) TASSILO_AVX2 {
-    if (c >= width) return _mm256_setzero_si256();
-    return Operation::join(load_inside(rows.above, c, width), load_inside(rows.here, c, width),
-                           load_inside(rows.below, c, width));
-  };
-  __m256i before = _mm256_setzero_si256(), here = column(0);
-  for (int c = 0; c < width; c += 32) {
-    const __m256i after = column(c + 32);
-    const __m256i out = Operation::join(left_of(before, here), here, right_of(here, after));
-    if (c + 32 <= width) {
-      _mm256_storeu_si256(reinterpret_cast<__m256i*>(labels + c), out);
-    } else {
-      std::array<std::uint8_t, 32> rest;
-      _mm256_storeu_si256(reinterpret_cast<__m256i*>(rest.data()), out);
-      for (int k = 0; k < width - c; ++k) labels[c + k] = rest[static_cast<std::size_t>(k)];
-    }
-    before = here;
-    here = after;
-  }
-}
-
-TASSILO_AVX2 void erode_rows(const ThreeRows& rows, int width, std::uint8_t* labels) {
-  over_nine<Erode>(rows, width, labels);
-}
-
-TASSILO_AVX2 int dilate_rows(const ThreeRows& rows, int width, std::uint8_t* labels, const RowRuns& runs) {
-  over_nine<Dilate>(rows, width, labels);
-  return runs_of(labels, width, runs);
+  return runs == nullptr ? 0 : runs_of<Bytes>(labels, width, *runs);
 }
 
 }  // namespace
 
-constinit const ColorKernel avx2_color_kernel{claims_of, labels_of, erode_rows, dilate_rows};
+constinit const ColorKernel avx2_color_kernel{claims_of, labels_of, erode_rows<Bytes>, dilate_rows<Bytes>};
 
 }  // namespace tassilo
 

@@ -5,9 +5,30 @@
 #include <arm_neon.h>
 
 #include "tassilo/color/internal/color_kernel.h"
+#define TASSILO_ROW_TARGET
+#include "tassilo/color/internal/row_loops.h"
 
 namespace tassilo {
 namespace {
+
+/// Of row_loops.h.
+struct Bytes {
+  using Vector = uint8x16_t;
+  static constexpr int kSize = 16, kBitsPerByte = 4;
+
+  static Vector zero() { return vdupq_n_u8(0); }
+  static Vector load(const std::uint8_t* from) { return vld1q_u8(from); }
+  static void store(std::uint8_t* to, Vector v) { vst1q_u8(to, v); }
+  static Vector left_of(Vector before, Vector here) { return vextq_u8(before, here, 15); }
+  static Vector right_of(Vector here, Vector after) { return vextq_u8(here, after, 1); }
+  static Vector same(Vector a, Vector b, Vector c) { return vandq_u8(b, vandq_u8(vceqq_u8(a, b), vceqq_u8(c, b))); }
+  static Vector any(Vector a, Vector b, Vector c) { return vorrq_u8(b, vorrq_u8(a, c)); }
+  /// NEON has no mask of one bit a byte: a shift that narrows leaves four of them.
+  static std::uint64_t changes(Vector a, Vector b) {
+    const uint8x8_t narrow = vshrn_n_u16(vreinterpretq_u16_u8(vmvnq_u8(vceqq_u8(a, b))), 4);
+    return vget_lane_u64(vreinterpret_u64_u8(narrow), 0) & 0x1111111111111111u;
+  }
+};
 
 uint8x16x4_t table64(const std::uint8_t* from) { return vld1q_u8_x4(from); }
 
@@ -60,33 +81,6 @@ void claims_of(const KernelTable& table, const YuvRow& row, int pairs, std::uint
   plain_color_kernel.claims(table, rest, pairs - k, claims + k);
 }
 
-int runs_of(const std::uint8_t* labels, int width, const RowRuns& runs) {
-  int count = 0;
-  std::uint8_t label = 0;  // of the run at work
-  const auto change = [&](int c, std::uint8_t to) {
-    runs.end[count] = static_cast<std::uint16_t>(c);
-    count += label != 0;
-    runs.begin[count] = static_cast<std::uint16_t>(c);
-    runs.label[count] = label = to;
-  };
-  if (width > 0 && labels[0] != 0) change(0, labels[0]);
-  int c = 1;
-  for (; c + 16 <= width; c += 16) {
-    const uint8x16_t same = vceqq_u8(vld1q_u8(labels + c), vld1q_u8(labels + c - 1));
-    // Four bits a pixel: NEON has no mask of one bit a byte.
-    const uint8x8_t narrow = vshrn_n_u16(vreinterpretq_u16_u8(vmvnq_u8(same)), 4);
-    std::uint64_t changed = vget_lane_u64(vreinterpret_u64_u8(narrow), 0) & 0x1111111111111111u;
-    for (; changed != 0; changed &= changed - 1) {
-      const int at = c + __builtin_ctzll(changed) / 4;
-      change(at, labels[at]);
-    }
-  }
-  for (; c < width; ++c)
-    if (labels[c] != labels[c - 1]) change(c, labels[c]);
-  if (width > 0 && label != 0) change(width, 0);
-  return count;
-}
-
 int labels_of(const KernelTable& table, const std::uint8_t* claims, const YuvRow& row, int width, std::uint8_t* labels,
               const RowRuns* runs) {
   const uint8x16x4_t bright[4] = {table64(table.bright.data()), table64(table.bright.data() + 64),
@@ -118,57 +112,12 @@ int labels_of(const KernelTable& table, const std::uint8_t* claims, const YuvRow
   }
   const YuvRow rest{row.y + c * row.y_step, row.u, row.v, row.y_step, row.chroma_step};
   plain_color_kernel.labels(table, claims + c / 2, rest, width - c, labels + c, nullptr);
-  return runs == nullptr ? 0 : runs_of(labels, width, *runs);
-}
-
-/// The block of 16 bytes, of which those from `width` on are 0.
-uint8x16_t load_inside(const std::uint8_t* row, int c, int width) {
-  if (c + 16 <= width) return vld1q_u8(row + c);
-  std::uint8_t rest[16] = {};
-  for (int k = 0; k < width - c; ++k) rest[k] = row[c + k];
-  return vld1q_u8(rest);
-}
-
-struct Erode {
-  static uint8x16_t join(uint8x16_t a, uint8x16_t b, uint8x16_t c) {
-    return vandq_u8(b, vandq_u8(vceqq_u8(a, b), vceqq_u8(c, b)));
-  }
-};
-struct Dilate {
-  static uint8x16_t join(uint8x16_t a, uint8x16_t b, uint8x16_t c) { return vorrq_u8(b, vorrq_u8(a, c)); }
-};
-
-template <class Operation>
-void over_nine(const ThreeRows& rows, int width, std::uint8_t* labels) {
-  const auto column = [&](int c) {
-    if (c >= width) return vdupq_n_u8(0);
-    return Operation::join(load_inside(rows.above, c, width), load_inside(rows.here, c, width),
-                           load_inside(rows.below, c, width));
-  };
-  uint8x16_t before = vdupq_n_u8(0), here = column(0);
-  for (int c = 0; c < width; c += 16) {
-    const uint8x16_t after = column(c + 16);
-    const uint8x16_t out = Operation::join(vextq_u8(before, here, 15), here, vextq_u8(here, after, 1));
-    if (c + 16 <= width) {
-      vst1q_u8(labels + c, out);
-    } else {
-      std::uint8_t rest[16];
-      vst1q_u8(rest, out);
-      for (int k = 0; k < width - c; ++k) labels[c + k] = rest[k];
-    }
-    before = here;
-    here = after;
-  }
-}
-
-int dilate_rows(const ThreeRows& rows, int width, std::uint8_t* labels, const RowRuns& runs) {
-  over_nine<Dilate>(rows, width, labels);
-  return runs_of(labels, width, runs);
+  return runs == nullptr ? 0 : runs_of<Bytes>(labels, width, *runs);
 }
 
 }  // namespace
 
-constinit const ColorKernel neon_color_kernel{claims_of, labels_of, over_nine<Erode>, dilate_rows};
+constinit const ColorKernel neon_color_kernel{claims_of, labels_of, erode_rows<Bytes>, dilate_rows<Bytes>};
 
 }  // namespace tassilo
 

@@ -13,24 +13,18 @@ namespace {
 
 constexpr std::size_t kBits = 64;
 
-/// Bits [begin, end) of a row.
-void set_bits(std::uint64_t* row, std::size_t begin, std::size_t end) {
-  const std::size_t first = begin / kBits, last = (end - 1) / kBits;
-  const std::uint64_t from = ~std::uint64_t{0} << begin % kBits;
-  const std::uint64_t to = ~std::uint64_t{0} >> (kBits - 1 - (end - 1) % kBits);
-  if (first == last) {
-    row[first] |= from & to;
-    return;
-  }
-  row[first] |= from;
-  for (std::size_t i = first + 1; i < last; ++i) row[i] = ~std::uint64_t{0};
-  row[last] |= to;
+std::size_t most_rows_of_band(const PlaneFrame& frame) { return std::max<std::size_t>(1, 4096 / frame.stride); }
+/// Bands of rows that stay in the fastest cache, 4096 words or one row: calls use(first row, rows).
+template <class Use>
+void for_bands(const PlaneFrame& frame, Use use) {
+  const std::size_t most = most_rows_of_band(frame);
+  for (std::size_t first = 0; first < frame.rows; first += most) use(first, std::min(most, frame.rows - first));
 }
 
 /// Joins a plane with itself, shifted, over boxes of offsets; `sign` is the direction of the shifts.
-template <class Join, class Triple>
+template <class Join, class Triple, class Nine>
 BitPlane over_boxes(BitPlane plane, const PlaneFrame& frame, std::span<const PixelBox> boxes, int sign, Join join,
-                    Triple triple) {
+                    Triple triple, Nine nine) {
   const PlaneKernel& kernel = plane_kernel(kernel_in_use());
   const std::size_t words = frame.words();
   const auto shift = [&](int columns, int rows) {
@@ -55,10 +49,17 @@ BitPlane over_boxes(BitPlane plane, const PlaneFrame& frame, std::span<const Pix
   // All boxes share the first `narrowest` columns; `tall` is the plane over those and rows 0 .. height - 1.
   const int narrowest = std::ranges::min(boxes, {}, &PixelBox::width).width();
   BitPlane tall = std::move(plane);
-  grow(tall, 1, narrowest, 1, 0);
   int height = 1;
+  if (narrowest >= 3 && boxes[0].height() >= 3) {
+    nine(kernel, spare.words(), tall.words(), words, frame.stride, sign);
+    std::swap(tall, spare);
+    grow(tall, 3, narrowest, 1, 0);
+    height = 3;
+  } else {
+    grow(tall, 1, narrowest, 1, 0);
+  }
   if (boxes.size() == 1 && boxes[0].x0 == 0 && boxes[0].y0 == 0) {
-    grow(tall, 1, boxes[0].height(), 0, 1);
+    grow(tall, height, boxes[0].height(), 0, 1);
     return tall;
   }
   BitPlane result(frame), wide(frame);
@@ -103,39 +104,41 @@ BitPlane::BitPlane(const PlaneFrame& frame) : guard_(frame.guard), words_(frame.
 
 BitPlane plane_of(const Region& region, const PlaneFrame& frame) {
   BitPlane plane(frame);
-  std::uint64_t* const words = plane.words();
-  std::fill_n(words, frame.words(), 0);
-  for (const PixelRun& run : region.runs())
-    set_bits(words + static_cast<std::size_t>(run.row - frame.y0) * frame.stride,
-             static_cast<std::size_t>(run.begin - frame.x0), static_cast<std::size_t>(run.end - frame.x0));
+  const PlaneKernel& kernel = plane_kernel(kernel_in_use());
+  const auto runs = region.runs();
+  auto run = runs.begin();
+  for_bands(frame, [&](std::size_t first, std::size_t rows) {
+    std::uint64_t* const words = plane.words() + first * frame.stride;
+    std::fill_n(words, rows * frame.stride, 0);
+    // Where the runs begin and end, then all between: the bit behind a row is none of its pixels.
+    const auto turn = [&](std::size_t at) { words[at / kBits] ^= std::uint64_t{1} << at % kBits; };
+    const int top = frame.y0 + static_cast<int>(first), bottom = top + static_cast<int>(rows);
+    for (; run != runs.end() && run->row < bottom; ++run) {
+      const std::size_t row = static_cast<std::size_t>(run->row - top) * frame.stride * kBits;
+      turn(row + static_cast<std::size_t>(run->begin - frame.x0));
+      turn(row + static_cast<std::size_t>(run->end - frame.x0));
+    }
+    kernel.fill(words, rows * frame.stride);
+  });
   return plane;
 }
 
 Region region_of(const BitPlane& plane, const PlaneFrame& frame, PixelShift shift, std::size_t expected) {
-  // Bands of rows, so that what a kernel may write stays small beside the plane.
-  constexpr std::size_t band_words = 4096;
   const PlaneKernel& kernel = plane_kernel(kernel_in_use());
-  const std::size_t band_rows = std::max<std::size_t>(1, band_words / frame.stride);
   const std::size_t row_bits = frame.stride * kBits;
-  RecycledBuffer<std::uint32_t> at(std::min(band_rows, frame.rows) * row_bits + 2);
+  RecycledBuffer<std::uint32_t> at(std::min(most_rows_of_band(frame), frame.rows) * row_bits + 16);
   RunVector runs;
   runs.reserve(expected);
-  const double rows_per_bit = 1 / static_cast<double>(row_bits);
-  for (std::size_t first = 0; first < frame.rows; first += band_rows) {
-    const std::size_t band = std::min(band_rows, frame.rows - first);
-    const std::size_t changes = kernel.changes(at.data(), plane.words() + first * frame.stride, band * frame.stride);
+  for_bands(frame, [&](std::size_t first, std::size_t rows) {
+    const std::size_t changes = kernel.changes(at.data(), plane.words() + first * frame.stride, rows * frame.stride);
     // Each run changes the bits twice within its row, as the bit behind a row is 0.
     const std::size_t before = runs.size();
+    runs.resize(before + changes / 2 + 8);
+    kernel.runs(
+        runs.data() + before, at.data(), changes,
+        {frame.x0 + shift.columns, frame.y0 + shift.rows + static_cast<int>(first), static_cast<int>(row_bits)});
     runs.resize(before + changes / 2);
-    const int left = frame.x0 + shift.columns, top = frame.y0 + shift.rows + static_cast<int>(first);
-    for (std::size_t k = 0; k < changes; k += 2) {
-      // Exact: the number of a bit has 32 bits, a double 53, and a bit's middle lies half a bit from the next row.
-      const int row = static_cast<int>((at[k] + 0.5) * rows_per_bit);
-      const int begin_of_row = row * static_cast<int>(row_bits);
-      runs[before + k / 2] = {to_coordinate(top + row), to_coordinate(left + static_cast<int>(at[k]) - begin_of_row),
-                              to_coordinate(left + static_cast<int>(at[k + 1]) - begin_of_row)};
-    }
-  }
+  });
   return Region::from_sorted(std::move(runs));
 }
 
@@ -143,14 +146,16 @@ BitPlane dilated(BitPlane plane, const PlaneFrame& frame, std::span<const PixelB
   return over_boxes(
       std::move(plane), frame, boxes, 1,
       [](const PlaneKernel& kernel, auto... arguments) { kernel.join_or(arguments...); },
-      [](const PlaneKernel& kernel, auto... arguments) { kernel.triple_or(arguments...); });
+      [](const PlaneKernel& kernel, auto... arguments) { kernel.triple_or(arguments...); },
+      [](const PlaneKernel& kernel, auto... arguments) { kernel.nine_or(arguments...); });
 }
 
 BitPlane eroded(BitPlane plane, const PlaneFrame& frame, std::span<const PixelBox> boxes) {
   return over_boxes(
       std::move(plane), frame, boxes, -1,
       [](const PlaneKernel& kernel, auto... arguments) { kernel.join_and(arguments...); },
-      [](const PlaneKernel& kernel, auto... arguments) { kernel.triple_and(arguments...); });
+      [](const PlaneKernel& kernel, auto... arguments) { kernel.triple_and(arguments...); },
+      [](const PlaneKernel& kernel, auto... arguments) { kernel.nine_and(arguments...); });
 }
 
 }  // namespace tassilo
