@@ -111,9 +111,8 @@ class ImageDrawing {
   }
 
   void box(const PixelBox& pixels, const Pen& pen) {
-    const Rect rect = on_image(pixels);
-    labels_.keep_clear(rect);
-    canvas_.stroke_rounded(rect, 3 * unit_, pen);
+    labels_.keep_clear(on_image(pixels));
+    canvas_.stroke_rounded(on_image(pixels), 3 * unit_, pen);
   }
 
   void ball(const Ball& ball, bool is_best) {
@@ -121,6 +120,7 @@ class ImageDrawing {
     const CanvasPoint center = on_canvas(ball.center, layout_.scale);
     box(ball.box, {.ink = color, .width = (is_best ? 2 : 1.2) * unit_, .cased = is_best});
     if (!is_best) return;
+    labels_.keep_free(on_image(ball.box));
     canvas_.stroke_circle(center, ball.radius_px * layout_.scale,
                           {.ink = kTextInk.with_alpha(.9), .width = 1.2 * unit_});
   }

@@ -290,14 +290,35 @@ TEST(LabelLayout, StaysInsideAndApart) {
       EXPECT_EQ(overlap(boxes[0], labels[0]), 0);
     }
   }
-  LabelLayout crowd(bounds);
-  const Rect box{300, 200, 40, 40};
-  crowd.keep_clear(box);
+}
+
+// Rather than onto each other or onto what is kept free, labels move away from their box.
+TEST(LabelLayout, CrowdsStayReadable) {
+  LabelLayout layout({4, 4, 760, 400});
+  const Rect box{300, 200, 40, 40}, ball{330, 180, 60, 60};
+  layout.keep_clear(box);
+  layout.keep_clear(ball);
+  layout.keep_free(ball);
   std::vector<Rect> labels;
-  for (int i = 0; i < 4; ++i) labels.push_back(crowd.place(box, 120, 18));
-  for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < i; ++j)
-      EXPECT_EQ(overlap(labels[static_cast<std::size_t>(i)], labels[static_cast<std::size_t>(j)]), 0);
+  for (int i = 0; i < 12; ++i) {
+    const Rect label = layout.place(box, 120, 18);
+    EXPECT_EQ(overlap(label, ball), 0) << i;
+    for (const Rect& other : labels) EXPECT_EQ(overlap(label, other), 0) << i;
+    labels.push_back(label);
+  }
+}
+
+// A label may hide a box rather than move away from its own for a few pixels of it.
+TEST(LabelLayout, StaysNearItsBox) {
+  LabelLayout layout({4, 4, 760, 400});
+  const Rect box{300, 200, 40, 40};
+  layout.keep_clear(box);
+  for (const Rect& around :
+       {Rect{150, 175, 340, 8}, Rect{150, 255, 340, 8}, Rect{150, 175, 30, 80}, Rect{460, 175, 30, 80}})
+    layout.keep_clear(around);
+  const Rect label = layout.place(box, 120, 18);
+  EXPECT_GT(overlap(label, {box.x - 4 - 120, box.y - 4 - 18, box.width + 8 + 240, box.height + 8 + 36}),
+            .99 * 120 * 18);
 }
 
 TEST(OverlayText, SaysNumbersAsPeopleDo) {
