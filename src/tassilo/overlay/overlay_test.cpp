@@ -183,6 +183,38 @@ TEST(DrawOverlay, FreeFloorIsGreenUpToItsRange) {
   EXPECT_GT(red[0], red[1] + 60);
 }
 
+// The tint tells of the floor; what lies on it keeps its color.
+TEST(DrawOverlay, BallsAndLinesOnTheFreeFloorKeepTheirColor) {
+  const MountedCamera camera = level_camera();
+  Scene scene;
+  scene.free_space = quarter(3, SectorState::free);
+  Ball ball;
+  ball.center = {100, 90};
+  ball.radius_px = 8;
+  ball.box = {92, 82, 109, 99};
+  scene.balls = {ball};
+  Surface surface;
+  surface.width = 200;
+  surface.height = 120;
+  surface.kinds.assign(200 * 120, SurfaceKind::carpet);
+  for (int r = 105; r < 110; ++r)
+    for (int c = 0; c < 200; ++c) surface.kinds[static_cast<std::size_t>(r * 200 + c)] = SurfaceKind::line;
+  const Surface* const none = nullptr;
+  for (const Surface* given : {none, static_cast<const Surface*>(&surface)}) {
+    SCOPED_TRACE(given != nullptr);
+    const Picture picture = drawn(scene, {.camera = &camera, .surface = given, .scale = 2});
+    const auto is_tinted = [&](int c, int r) {
+      return at(picture, 2 * c, 2 * r)[1] > at(picture, 2 * c, 2 * r)[0] + 20;
+    };
+    EXPECT_EQ(at(picture, 2 * 100, 2 * 90), kGray);
+    EXPECT_EQ(at(picture, 2 * 97, 2 * 93), kGray);
+    EXPECT_TRUE(is_tinted(100, 102));
+    EXPECT_TRUE(is_tinted(85, 90));
+    EXPECT_EQ(is_tinted(100, 107), given == nullptr);
+    EXPECT_TRUE(is_tinted(100, 112));
+  }
+}
+
 TEST(DrawOverlay, UnseenSectorsAndMissingCameraDrawNoFloor) {
   const MountedCamera camera = level_camera();
   Scene scene;
