@@ -355,6 +355,7 @@ TEST(LabelLayout, StaysNearItsBox) {
 
 TEST(OverlayText, SaysNumbersAsPeopleDo) {
   EXPECT_EQ(meters(1.857), "1.86 m");
+  EXPECT_EQ(meters(-.001), "0.00 m");
   EXPECT_EQ(percent(.974), "97 %");
   EXPECT_EQ(bearing_text(.2), "11° left");
   EXPECT_EQ(bearing_text(-.2), "11° right");
