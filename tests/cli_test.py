@@ -472,12 +472,18 @@ class TrainColors(CliTest):
         self.assertRegex(result.err, r"warning: samples.yaml:2: black shares \d+ pixels with green in line 1")
 
     def test_images_of_two_ranges(self):
-        sample = "image: {}, class: {}, rectangle: [310, 79, 353, 119]"
-        self.fails(*self.train(sample.format(DATA / "train_div/stills.mkv", "green"), sample.format(DATA / "train_vga/stills.mkv", "black")),
-                   says=("samples.yaml:", "full color range", "limited", "one range"))
+        limited, full = (f"image: {DATA / name / 'stills.mkv'}, class: green, rectangle: [310, 79, 353, 119]" for name in ("train_div", "train_vga"))
+        self.fails(*self.train(limited, limited, full, full),
+                   says=("samples.yaml:3: ", "train_vga/stills.mkv has full color range, the image in line 1 has limited", "one range"))
+        self.fails(*self.train(full, limited), says=("samples.yaml:2: ", "train_div/stills.mkv has limited color range, the image in line 1 has full"))
 
     def test_few_samples(self):
         self.assertIn("quality not measured", self.succeeds(*self.train(self.GREEN)).out)
+        black = "image: still.png, class: black, rectangle: [0, 0, 9, 9]"
+        result = self.succeeds(*self.train(self.GREEN, self.GREEN.replace("310", "320"), black))
+        self.assertRegex(result.out, r"(?m)^green +[1-9]\d+ +[\d.]+ %")
+        self.assertRegex(result.out, r"(?m)^black +0 +not measured +\d+\.\.\d+$", "a class is not bad for lack of a second sample")
+        self.assertNotIn("black: {", (self.folder / "trained.yaml").read_text())
         self.fails(*self.train("image: still.png, class: no_color, rectangle: [0, 0, 9, 9]"), says=("samples.yaml", "no_color alone"))
         self.succeeds(*self.train("image: one.png, class: red, rectangle: [0, 0, 1, 1]"))
         self.succeeds("run", "--colors", "trained.yaml", "--source", "one.png")

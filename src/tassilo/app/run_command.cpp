@@ -156,13 +156,15 @@ class Sinks {
     if (!arguments.output.empty()) output_.emplace(arguments.output);
   }
 
-  void write(const Frame& frame, const Scene& scene, const Segmentation& segmentation, const Optics* optics) {
+  void write(const Frame& frame, const Scene& scene, const VisionWorkspace& workspace, const Optics* optics) {
     if (output_) output_->write(to_json_line(scene));
+    const Segmentation& segmentation = workspace.segmentation;
     if (label_maps_)
       label_maps_->write(GrayImage{segmentation.width, segmentation.height, segmentation.labels}, scene.frame);
     if (overlay_) {
       OverlayOptions options;
       options.camera = optics != nullptr ? &optics->camera : nullptr;
+      options.surface = &workspace.surface;
       overlay_->write(draw_overlay(frame.view, frame.range, scene, options), scene.frame, scene.t);
     }
   }
@@ -261,7 +263,7 @@ int run_command(const RunArguments& arguments) {
         summary.add_odometry(known);
         if (!known) scene.why.emplace_back("odometry", "missing at this time");
       }
-      sinks.write(*frame, scene, workspace.segmentation, vision.optics());
+      sinks.write(*frame, scene, workspace, vision.optics());
       summary.add(scene);
       progress.frame(++done);
     }

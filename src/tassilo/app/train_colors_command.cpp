@@ -43,6 +43,11 @@ void print_quality(const ColorTable& table, const ColorQuality& quality, const s
       fmt::print("{:10}{:>9}   no samples: the class stays empty\n", to_string(color), 0);
       continue;
     }
+    const std::string brightness = fmt::format("{}..{}", interval.low, interval.high);
+    if (pixels == 0) {
+      fmt::print("{:10}{:>9}{:>21}{:>12}\n", to_string(color), 0, "not measured", brightness);
+      continue;
+    }
     std::string remarks;
     const auto name = [](std::size_t k) { return to_string(static_cast<ColorClass>(k)); };
     const auto& confused = quality.confusion[static_cast<std::size_t>(color)];
@@ -58,7 +63,7 @@ void print_quality(const ColorTable& table, const ColorQuality& quality, const s
                                percent(static_cast<double>(overlap[k]) / static_cast<double>(pixels)));
     if (!claimed.empty()) remarks += "; " + claimed;
     fmt::print("{:10}{:>9}{:>10}{:>11}{:>12}  {}\n", to_string(color), pixels, percent(quality.recall(color)),
-               percent(quality.precision(color)), fmt::format("{}..{}", interval.low, interval.high), remarks);
+               percent(quality.precision(color)), brightness, remarks);
   }
 }
 

@@ -67,11 +67,27 @@ void warn_of_overlap(const std::vector<std::pair<const TrainingSample*, Region>>
     }
 }
 
-/// The frames of one image or video that samples ask for, and the line that asks for the last of them.
+/// The frames of one image or video that samples ask for.
 struct WantedFrames {
+  fs::path image;
   std::set<std::int64_t> indices;
-  int line = 0;
+  int first_line = 0;    ///< That asks for the image.
+  int line_of_last = 0;  ///< That asks for its last frame.
 };
+
+/// In the order of the file.
+std::vector<WantedFrames> wanted_frames(const std::vector<TrainingSample>& samples) {
+  std::vector<WantedFrames> wanted;
+  std::map<fs::path, std::size_t> places;
+  for (const TrainingSample& sample : samples) {
+    const auto [place, is_new] = places.try_emplace(sample.image, wanted.size());
+    if (is_new) wanted.push_back({.image = sample.image, .indices = {}, .first_line = sample.line});
+    WantedFrames& frames = wanted[place->second];
+    if (frames.indices.empty() || sample.frame > *frames.indices.rbegin()) frames.line_of_last = sample.line;
+    frames.indices.insert(sample.frame);
+  }
+  return wanted;
+}
 
 std::string today() {
   const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
@@ -87,13 +103,6 @@ std::string today() {
 LoadedSamples load_samples(const std::string& file, ColorRange images_range, const Warn& warn) {
   const std::vector<TrainingSample> list = read_samples(file);
   if (list.empty()) throw Error(file, "holds no samples, must hold at least one");
-  std::map<fs::path, WantedFrames> wanted;
-  for (const TrainingSample& sample : list) {
-    WantedFrames& frames = wanted[sample.image];
-    if (frames.indices.empty() || sample.frame > *frames.indices.rbegin()) frames.line = sample.line;
-    frames.indices.insert(sample.frame);
-  }
-
   LoadedSamples loaded;
   loaded.files.push_back({"samples", file});
   for (const TrainingSample& sample : list) {
@@ -102,9 +111,11 @@ LoadedSamples load_samples(const std::string& file, ColorRange images_range, con
       loaded.files.push_back({"a mask", mask->path.string()});
   }
   int group = 0;
-  for (const auto& [image, frames] : wanted) {
+  int first_line = 0;  // of the file's samples
+  for (const WantedFrames& frames : wanted_frames(list)) {
+    const fs::path& image = frames.image;
     const std::vector<std::int64_t> indices(frames.indices.begin(), frames.indices.end());
-    const std::string place_of_last = fmt::format("{}:{}", file, frames.line);
+    const std::string place_of_last = fmt::format("{}:{}", file, frames.line_of_last);
     SourceOptions options;
     options.location = image.string();
     options.images_range = images_range;
@@ -112,9 +123,10 @@ LoadedSamples load_samples(const std::string& file, ColorRange images_range, con
     for (std::size_t i = 0; i < pictures.size(); ++i, ++group) {
       const Frame& frame = pictures[i];
       if (loaded.range && *loaded.range != frame.range)
-        throw Error(place_of_last,
-                    fmt::format("{} has {} color range, images before it have {}; a table is for one range",
-                                image.string(), to_string(frame.range), to_string(*loaded.range)));
+        throw Error(fmt::format("{}:{}", file, frames.first_line),
+                    fmt::format("{} has {} color range, the image in line {} has {}; a table is for one range",
+                                image.string(), to_string(frame.range), first_line, to_string(*loaded.range)));
+      if (!loaded.range) first_line = frames.first_line;
       loaded.range = frame.range;
       std::vector<std::pair<const TrainingSample*, Region>> drawn;
       for (const TrainingSample& sample : list) {
@@ -169,10 +181,11 @@ TrainedColors train_colors_file(const TrainingSet& set, const TrainingSet* held_
     provenance.notes = "on " + held_out->name;
   } else {
     trained.quality = cross_validate(loaded.samples, *loaded.range, options);
-    provenance.notes = loaded.images > 1 ? "cross-validated: on images held out in turn"
-                       : loaded.samples.size() > 1
-                           ? "cross-validated: on samples of one image held out in turn"
-                           : "not measured: needs a second sample of each color, better in another image";
+    const bool is_measured =
+        std::ranges::any_of(sampled, [&](ColorClass color) { return trained.quality.pixels(color) > 0; });
+    provenance.notes = !is_measured ? "not measured: needs a second sample of each color, better in another image"
+                       : loaded.images > 1 ? "cross-validated: on images held out in turn"
+                                           : "cross-validated: on samples of one image held out in turn";
   }
   for (const ColorClass color : kColorClasses)
     if (trained.quality.pixels(color) > 0)

@@ -58,6 +58,10 @@ ColorQuality cross_validate(const std::vector<ColorSample>& samples, ColorRange 
   for (std::size_t fold = 0; fold < folds; ++fold) {
     std::vector<ColorSample> training, held_out;
     for (std::size_t i = 0; i < samples.size(); ++i) (fold_of(i) == fold ? held_out : training).push_back(samples[i]);
+    std::erase_if(held_out, [&](const ColorSample& sample) {
+      return sample.color != ColorClass::no_color &&
+             std::ranges::find(training, sample.color, &ColorSample::color) == training.end();
+    });
     add_quality(quality, Classifier(train_colors(training, range, options)), held_out);
   }
   return quality;

@@ -24,8 +24,9 @@ struct ColorQuality {
 void add_quality(ColorQuality& quality, const Classifier& classifier, const std::vector<ColorSample>& samples);
 
 /// Quality on pixels the table was not trained with: each of up to five folds of sample groups is held out once, and
-/// tables trained from the others judge it. With a single group the samples themselves are dealt out to the folds; with
-/// a single sample nothing is counted. Throws Error when options are out of range. Costs up to five trainings.
+/// tables trained from the others judge it. With a single group the samples themselves are dealt out to the folds.
+/// Samples of a class of which the others have none are not counted: they tell nothing about the class. Throws Error
+/// when options are out of range. Costs up to five trainings.
 ColorQuality cross_validate(const std::vector<ColorSample>& samples, ColorRange range,
                             const TrainingOptions& options = {});
 

@@ -131,6 +131,16 @@ TEST(CrossValidate, CountsEverySampleOnceAndFindsTheWeakClass) {
   EXPECT_EQ(quality.recall(ColorClass::magenta), std::nullopt);
 }
 
+// Held out, the only sample of a class leaves none to learn the class from: that says nothing about it.
+TEST(CrossValidate, DoesNotCountAClassThatTheOthersLack) {
+  std::mt19937 random(6);
+  auto samples = samples_of_all(0.8, random);
+  samples.push_back({ColorClass::cyan, 0, pixels({ColorClass::cyan, 110, 170, 60}, 0.9, 1000, random)});
+  const ColorQuality quality = cross_validate(samples, ColorRange::limited);
+  EXPECT_EQ(quality.pixels(ColorClass::green), 4500);
+  EXPECT_EQ(quality.recall(ColorClass::cyan), std::nullopt);
+}
+
 TEST(DistanceTo, EqualsBruteForce) {
   std::mt19937 random(7);
   std::uniform_int_distribution<int> at(0, 255);

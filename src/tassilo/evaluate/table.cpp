@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <string_view>
 
+#include "tassilo/base/unsigned_zero.h"
 #include "tassilo/color/color_class.h"
 #include "tassilo/evaluate/evaluate.h"
 
@@ -14,7 +15,7 @@ std::string fixed(std::optional<double> value, int digits) {
   if (!value) return "-";
   std::array<char, 400> text;  // the longest double has 309 digits before the point
   const int length = std::snprintf(text.data(), text.size(), "%.*f", digits, *value);
-  return std::string(text.data(), static_cast<std::size_t>(length));
+  return unsigned_zero(std::string(text.data(), static_cast<std::size_t>(length)));
 }
 std::string with_unit(const std::string& number, const char* unit) { return number == "-" ? number : number + unit; }
 std::string percent(std::optional<double> share) {

@@ -8,7 +8,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json json_of(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+Json json_of(const std::optional<double>& value) { return value ? Json(*value + 0.0) : Json(nullptr); }  // 0 for -0
 
 Json json_of(const Spread& s) {
   return {{"median", json_of(s.median)}, {"p90", json_of(s.p90)}, {"max", json_of(s.max)}, {"count", s.count}};

@@ -128,18 +128,25 @@ std::vector<std::string> shipped_names(std::span<const fs::path> folders) {
 
 std::vector<fs::path> config_folders() {
   std::vector<fs::path> folders;
-  if (const char* chosen = std::getenv("TASSILO_CONFIG_DIR"); chosen && *chosen) folders.emplace_back(chosen);
   std::error_code error;
+  // The installed program is beside its own prefix, above its own code and in the prefix it was built for: one folder.
+  const auto add = [&](const fs::path& folder) {
+    const auto is_same = [&](const fs::path& other) {
+      return folder == other || fs::weakly_canonical(folder, error) == fs::weakly_canonical(other, error);
+    };
+    if (std::ranges::none_of(folders, is_same)) folders.push_back(folder);
+  };
+  if (const char* chosen = std::getenv("TASSILO_CONFIG_DIR"); chosen && *chosen) add(chosen);
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  if (!error) folders.push_back(program.parent_path().parent_path() / "share/tassilo/config");
+  if (!error) add(program.parent_path().parent_path() / "share/tassilo/config");
   // A library or Python module knows its own place, PREFIX/lib/.../it.so, wherever the prefix was moved.
   if (Dl_info code; dladdr(reinterpret_cast<void*>(&is_field_path), &code) != 0 && code.dli_fname != nullptr)
     for (fs::path folder = code.dli_fname; folder.is_absolute() && folder != folder.root_path();) {
       folder = folder.parent_path();
-      if (fs::exists(folder / "share/tassilo/config", error)) folders.push_back(folder / "share/tassilo/config");
+      if (fs::exists(folder / "share/tassilo/config", error)) add(folder / "share/tassilo/config");
     }
-  folders.emplace_back(TASSILO_INSTALLED_CONFIG);
-  folders.emplace_back(TASSILO_SOURCE_CONFIG);
+  add(TASSILO_INSTALLED_CONFIG);
+  add(TASSILO_SOURCE_CONFIG);
   return folders;
 }
 

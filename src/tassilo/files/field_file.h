@@ -12,7 +12,8 @@ namespace tassilo {
 
 /// Folders that may hold shipped files (fields/, robots/, ...), first hit wins: $TASSILO_CONFIG_DIR,
 /// share/tassilo/config of the installation (beside the running program's bin, then above the library or module that
-/// holds this code, then the prefix it was built for), config/ of the source tree.
+/// holds this code, then the prefix it was built for), config/ of the source tree. Each folder once, however it is
+/// spelled.
 std::vector<std::filesystem::path> config_folders();
 
 /// A field is named by a path when there is a slash or a .yaml ending in it, else by a shipped name.

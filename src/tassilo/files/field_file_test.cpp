@@ -81,6 +81,17 @@ TEST(FieldFile, ShippedNamesAreLookedUpInOrder) {
   unsetenv("TASSILO_CONFIG_DIR");
 }
 
+TEST(FieldFile, AFolderIsSearchedOnceHoweverItIsSpelled) {
+  unsetenv("TASSILO_CONFIG_DIR");
+  const std::vector<fs::path> shipped = config_folders();
+  const fs::path again = shipped.back() / "fields" / "..";
+  ASSERT_EQ(setenv("TASSILO_CONFIG_DIR", again.c_str(), 1), 0);
+  const std::vector<fs::path> folders = config_folders();
+  EXPECT_EQ(folders.front(), again);
+  EXPECT_EQ(folders.size(), shipped.size());
+  unsetenv("TASSILO_CONFIG_DIR");
+}
+
 TEST(FieldFile, MalformedFilesAreRefused) {
   const std::string good = R"(length: 8
 width: 4

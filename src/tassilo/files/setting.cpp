@@ -89,7 +89,7 @@ std::string shown(std::string_view text) {
 
 std::string number_text(double value) {
   std::array<char, 32> buffer;
-  const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+  const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value + 0.0);  // -0 is 0
   return std::string(buffer.data(), error == std::errc() ? end : buffer.data());
 }
 

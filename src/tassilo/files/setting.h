@@ -40,7 +40,7 @@ struct Setting {
 std::string joined(std::span<const std::string_view> names);
 /// Text from outside as messages show it: in quotes, printable, at most 40 characters.
 std::string shown(std::string_view text);
-/// Shortest text that reads back as the same number.
+/// Shortest text that reads back as the same number; 0 for -0.
 std::string number_text(double value);
 
 }  // namespace tassilo

@@ -26,6 +26,7 @@ TEST(Setting, ReadsNumbersExactly) {
   EXPECT_EQ(setting("+7").integer(0, 7), 7);
   EXPECT_TRUE(setting("true").boolean());
   EXPECT_FALSE(setting("false").boolean());
+  EXPECT_EQ(number_text(-0.0), "0");
   std::mt19937_64 random(1);
   for (int i = 0; i < 1000; ++i) {
     const double value = std::bit_cast<double>(random());

@@ -7,6 +7,7 @@
 
 #include "tassilo/base/contract.h"
 #include "tassilo/base/error.h"
+#include "tassilo/freespace/internal/ball_shape.h"
 #include "tassilo/geometry/angle.h"
 
 namespace tassilo {
@@ -65,7 +66,10 @@ struct RayEnd {
 class Walker {
  public:
   Walker(const SectorMap& map, const Surface& surface, std::span<const Ball> balls)
-      : map_(map), surface_(surface), balls_(balls) {}
+      : map_(map), surface_(surface), balls_(balls) {
+    shapes_.reserve(balls.size());
+    for (const Ball& ball : balls) shapes_.emplace_back(map.camera(), ball);
+  }
 
   RayEnd operator()(const SectorMap::Ray& ray) const {
     if (ray.steps.empty()) return {};
@@ -100,18 +104,18 @@ class Walker {
 
  private:
   bool on_ball(int column, int row) const {
-    return std::ranges::any_of(balls_, [&](const Ball& ball) {
-      // The rim of mixed colors and the shadow at the foot belong to it.
-      const double reach = ball.radius_px + 2;
-      const double right = column - ball.center.x, below = row - ball.center.y;
-      return right * right + below * below <= reach * reach ||
-             (column >= ball.box.x0 && column < ball.box.x1 && row >= ball.box.y0 && row < ball.box.y1);
-    });
+    // With the shadow at its foot.
+    for (const Ball& ball : balls_)
+      if (column >= ball.box.x0 && column < ball.box.x1 && row >= ball.box.y0 && row < ball.box.y1) return true;
+    constexpr double kRim = 2;  // of mixed colors: one sample of chroma spans two columns [px]
+    const PixelPoint pixel{static_cast<double>(column), static_cast<double>(row)};
+    return std::ranges::any_of(shapes_, [&](const BallShape& shape) { return shape.covers(pixel, kRim); });
   }
 
   const SectorMap& map_;
   const Surface& surface_;
   std::span<const Ball> balls_;
+  RecycledVector<BallShape> shapes_;  ///< Of the balls.
 };
 
 }  // namespace
@@ -129,7 +133,7 @@ void FreeSpaceOptions::check() const {
 }
 
 SectorMap::SectorMap(const MountedCamera& camera, const FreeSpaceOptions& options)
-    : options_(options), origin_{camera.center().x, camera.center().y} {
+    : camera_(camera), options_(options), origin_{camera.center().x, camera.center().y} {
   options_.check();
   angle_increment_ = radians(options_.sector_deg);
   // Only directions the camera can see. The circle is cut open behind the camera, wherever that looks.
@@ -157,6 +161,8 @@ SectorMap::SectorMap(const MountedCamera& camera, const FreeSpaceOptions& option
 }
 
 FreeSpace find_free_space(const SectorMap& map, const Surface& surface, std::span<const Ball> balls) {
+  expects(surface.width == map.camera().model().width && surface.height == map.camera().model().height,
+          "free space: the surface is of an image of the map's camera");
   expects(surface.tiles.size() == static_cast<std::size_t>(surface.tiles_across() * surface.tiles_down()),
           "free space: the surface's tiles are up to date");
   FreeSpace space;

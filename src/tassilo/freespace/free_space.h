@@ -44,6 +44,7 @@ class SectorMap {
     RecycledVector<Stretch> stretches;  ///< All steps, in order.
   };
 
+  const MountedCamera& camera() const { return camera_; }
   const FreeSpaceOptions& options() const { return options_; }
   FloorPoint origin() const { return origin_; }                ///< Below the camera.
   double angle_min() const { return angle_min_; }              ///< In [-pi, pi); 0 without sectors. [rad]
@@ -55,6 +56,7 @@ class SectorMap {
   }
 
  private:
+  MountedCamera camera_;
   FreeSpaceOptions options_;
   FloorPoint origin_;
   double angle_min_ = 0, angle_increment_ = 0;
@@ -67,7 +69,7 @@ class SectorMap {
 /// it. An accepted ball is no obstacle but hides the floor behind it.
 ///
 /// surface  of an image of the map's camera
-/// balls    accepted balls, by their box and disc in the image
+/// balls    accepted balls, by their box and outline in the image
 /// returns  one state and one range for each of the map's sectors
 /// cost     O(pixels + tiles on the lines of sight + pixels of tiles that are not all floor); safe from any thread.
 /// source: own, after the AGILO free motion space

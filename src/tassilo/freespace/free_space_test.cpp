@@ -8,6 +8,8 @@
 
 #include "tassilo/base/error.h"
 #include "tassilo/camera/test_world.h"
+#include "tassilo/freespace/internal/ball_shape.h"
+#include "tassilo/freespace/test_ball.h"
 #include "tassilo/geometry/angle.h"
 
 namespace tassilo {
@@ -51,6 +53,7 @@ double true_range(const World& world, FloorPoint origin, double angle) {
 /// One line of sight, step by step and without tiles: state and range.
 std::pair<SectorState, double> plain_walk(const SectorMap& map, const SectorMap::Ray& ray, const Surface& surface,
                                           const Ball& ball) {
+  const BallShape shape(map.camera(), ball);
   double free_until = 0;
   bool behind_ball = false;
   int odd = 0;
@@ -59,7 +62,7 @@ std::pair<SectorState, double> plain_walk(const SectorMap& map, const SectorMap:
       free_until = step.range;
       behind_ball = false;
       odd = 0;
-    } else if (distance(ball.center, {double(step.column), double(step.row)}) <= ball.radius_px + 2) {
+    } else if (shape.covers({double(step.column), double(step.row)}, 2)) {
       behind_ball = true;
     } else if (++odd > map.options().noise_px) {
       return {behind_ball ? SectorState::free : SectorState::blocked, free_until};
@@ -151,6 +154,27 @@ TEST(FindFreeSpace, TheBallIsNoObstacleButHidesTheFloorBehindIt) {
   const auto [without_state, without_range] = range_ahead({});
   EXPECT_EQ(without_state, SectorState::blocked);  // not accepted: an obstacle like any other
   EXPECT_LT(without_range, place.x);
+}
+
+// Along the side of a ball a line of sight runs over many pixels of its rim, where colors mix.
+TEST(FindFreeSpace, TheRimOfABallDoesNotBlock) {
+  for (const MountedCamera& camera : {test::cameras()[0], test::camera_of_flat_pixels()}) {
+    SCOPED_TRACE(camera.model().height);
+    World world;
+    world.wall_x = 3;
+    Surface surface = Known(camera, world).surface;
+    const test::KnownBall known{{1.2, 0, .1}};
+    for (int r = 0; r < surface.height; ++r)
+      for (int c = 0; c < surface.width; ++c)
+        for (const int beside : {-1, 0, 1})
+          if (known.shows_at(camera, {double(c + beside), double(r)}))
+            surface.kinds[static_cast<std::size_t>(r * surface.width + c)] = SurfaceKind::object;
+    surface.update_tiles();
+    const Ball ball = known.seen(camera);
+    const FreeSpace space = find_free_space(SectorMap(camera, {}), surface, std::span(&ball, 1));
+    for (std::size_t i = 0; i < space.states.size(); ++i)
+      EXPECT_TRUE(space.states[i] != SectorState::blocked || space.ranges[i] > 2) << i << ": " << space.ranges[i];
+  }
 }
 
 TEST(FindFreeSpace, TurningTheMountByWholeSectorsTurnsTheArcAlone) {

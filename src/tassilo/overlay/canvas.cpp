@@ -131,7 +131,7 @@ void Canvas::polyline(std::span<const CanvasPoint> points, const Pen& pen) {
   stroke(pen);
 }
 
-void Canvas::fill_polygons(std::span<const std::vector<CanvasPoint>> polygons, Ink fill) {
+void Canvas::polygons_path(std::span<const std::vector<CanvasPoint>> polygons) {
   cairo_new_path(cairo_.get());
   for (const std::vector<CanvasPoint>& polygon : polygons) {
     if (polygon.size() < 3) continue;
@@ -139,8 +139,37 @@ void Canvas::fill_polygons(std::span<const std::vector<CanvasPoint>> polygons, I
     for (const CanvasPoint& p : polygon) cairo_line_to(cairo_.get(), p.x, p.y);
     cairo_close_path(cairo_.get());
   }
+}
+
+void Canvas::fill_polygons(std::span<const std::vector<CanvasPoint>> polygons, Ink fill) {
+  polygons_path(polygons);
   set_ink(fill);
   cairo_fill(cairo_.get());
+}
+
+void Canvas::fill_polygons_where(std::span<const std::vector<CanvasPoint>> polygons, Ink fill,
+                                 std::span<const std::uint8_t> shown, int columns, const Rect& place) {
+  const int rows = columns > 0 ? static_cast<int>(shown.size()) / columns : 0;
+  if (rows == 0) return;
+  const Surface mask(cairo_image_surface_create(CAIRO_FORMAT_A8, columns, rows));
+  unsigned char* to = cairo_image_surface_get_data(mask.get());
+  for (int r = 0; r < rows; ++r, to += cairo_image_surface_get_stride(mask.get()))
+    std::ranges::copy(shown.subspan(static_cast<std::size_t>(r) * static_cast<std::size_t>(columns),
+                                    static_cast<std::size_t>(columns)),
+                      to);
+  cairo_surface_mark_dirty(mask.get());
+  cairo_t* cairo = cairo_.get();
+  cairo_save(cairo);
+  polygons_path(polygons);
+  cairo_clip(cairo);
+  cairo_translate(cairo, place.x, place.y);
+  cairo_scale(cairo, place.width / columns, place.height / rows);
+  const std::unique_ptr<cairo_pattern_t, decltype(&cairo_pattern_destroy)> pattern(
+      cairo_pattern_create_for_surface(mask.get()), &cairo_pattern_destroy);
+  cairo_pattern_set_extend(pattern.get(), CAIRO_EXTEND_PAD);
+  set_ink(fill);
+  cairo_mask(cairo, pattern.get());
+  cairo_restore(cairo);
 }
 
 void Canvas::stroke_circle(CanvasPoint center, double radius, const Pen& pen) {

@@ -54,15 +54,40 @@ Layout make_layout(const FrameView& frame, const OverlayOptions& options) {
   return layout;
 }
 
+/// 255 for each pixel of the frame that may be tinted as free floor, 0 where something shows that should keep its
+/// color.
+std::vector<std::uint8_t> tinted_pixels(const FrameView& frame, const Scene& scene, const Surface* surface) {
+  const auto columns = static_cast<std::size_t>(frame.width()), rows = static_cast<std::size_t>(frame.height());
+  std::vector<std::uint8_t> tinted(columns * rows, 255);
+  if (surface != nullptr)
+    std::ranges::transform(surface->kinds, tinted.begin(),
+                           [](SurfaceKind kind) { return kind == SurfaceKind::carpet ? 255 : 0; });
+  for (const Ball& ball : scene.balls) {
+    constexpr double kRim = 1;  // of mixed colors, beside the disc [px]
+    const double reach = ball.radius_px + kRim;
+    const auto clamped = [](double value, int size) { return static_cast<int>(std::clamp(value, 0.0, double(size))); };
+    const int top = clamped(ball.center.y - reach, frame.height()),
+              bottom = clamped(ball.center.y + reach + 1, frame.height()),
+              left = clamped(ball.center.x - reach, frame.width()),
+              right = clamped(ball.center.x + reach + 1, frame.width());
+    for (int r = top; r < bottom; ++r)
+      for (int c = left; c < right; ++c)
+        if (std::hypot(c - ball.center.x, r - ball.center.y) <= reach)
+          tinted[static_cast<std::size_t>(r) * columns + static_cast<std::size_t>(c)] = 0;
+  }
+  return tinted;
+}
+
 /// Draws onto the enlarged image.
 class ImageDrawing {
  public:
   ImageDrawing(Canvas& canvas, const Layout& layout)
       : canvas_(canvas), layout_(layout), unit_(layout.text / 12), labels_(label_bounds(layout)) {}
 
-  void draw(const Scene& scene, const MountedCamera* camera) {
-    if (camera != nullptr && scene.free_space)
-      free_space(project_free_space(*scene.free_space, *camera, layout_.scale));
+  void draw(const FrameView& frame, const Scene& scene, const OverlayOptions& options) {
+    if (options.camera != nullptr && scene.free_space)
+      free_space(project_free_space(*scene.free_space, *options.camera, layout_.scale),
+                 tinted_pixels(frame, scene, options.surface), frame.width());
     for (const LineSeen& line : scene.lines) {
       const CanvasPoint p = on_canvas(line.image_p, layout_.scale), q = on_canvas(line.image_q, layout_.scale);
       canvas_.polyline(std::vector{p, q}, {.ink = line_ink(line.kind), .width = 2 * unit_, .cased = true});
@@ -103,17 +128,16 @@ class ImageDrawing {
     return {box.x0 * s, box.y0 * s, box.width() * s, box.height() * s};
   }
 
-  void free_space(const FreeSpaceInImage& space) {
-    canvas_.fill_polygons(space.floor, kFreeInk.with_alpha(.22));
+  void free_space(const FreeSpaceInImage& space, const std::vector<std::uint8_t>& tinted, int columns) {
+    canvas_.fill_polygons_where(space.floor, kFreeInk.with_alpha(.22), tinted, columns, layout_.image);
     for (const auto& edge : space.open) canvas_.polyline(edge, {.ink = kFreeInk.with_alpha(.75), .width = 1.4 * unit_});
     for (const auto& edge : space.blocked)
       canvas_.polyline(edge, {.ink = kBlockedInk, .width = 2.4 * unit_, .cased = true});
   }
 
   void box(const PixelBox& pixels, const Pen& pen) {
-    const Rect rect = on_image(pixels);
-    labels_.keep_clear(rect);
-    canvas_.stroke_rounded(rect, 3 * unit_, pen);
+    labels_.keep_clear(on_image(pixels));
+    canvas_.stroke_rounded(on_image(pixels), 3 * unit_, pen);
   }
 
   void ball(const Ball& ball, bool is_best) {
@@ -121,6 +145,7 @@ class ImageDrawing {
     const CanvasPoint center = on_canvas(ball.center, layout_.scale);
     box(ball.box, {.ink = color, .width = (is_best ? 2 : 1.2) * unit_, .cased = is_best});
     if (!is_best) return;
+    labels_.keep_free(on_image(ball.box));
     canvas_.stroke_circle(center, ball.radius_px * layout_.scale,
                           {.ink = kTextInk.with_alpha(.9), .width = 1.2 * unit_});
   }
@@ -176,11 +201,14 @@ Picture draw_overlay(const FrameView& frame, ColorRange range, const Scene& scen
   options.check();
   const auto pixels = static_cast<std::size_t>(frame.width()) * static_cast<std::size_t>(frame.height());
   expects(options.labels.empty() || options.labels.size() == pixels, "draw_overlay: one label per pixel");
+  expects(options.surface == nullptr ||
+              (options.surface->width == frame.width() && options.surface->height == frame.height()),
+          "draw_overlay: the surface is the frame's");
   const Layout layout = make_layout(frame, options);
   Canvas canvas(layout.width, layout.height, kPanelInk);
   canvas.image(picture_from_frame(frame, range), layout.image);
   if (!options.labels.empty()) canvas.label_map(options.labels, frame.width(), layout.image);
-  canvas.clipped(layout.image, [&] { ImageDrawing(canvas, layout).draw(scene, options.camera); });
+  canvas.clipped(layout.image, [&] { ImageDrawing(canvas, layout).draw(frame, scene, options); });
   if (layout.bird.width > 0) draw_bird_view(canvas, layout.bird, scene, options.bird_range);
   draw_status(canvas, layout, scene);
   return canvas.picture();

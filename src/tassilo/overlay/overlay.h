@@ -7,12 +7,16 @@
 #include "tassilo/image/frame.h"
 #include "tassilo/overlay/picture.h"
 #include "tassilo/scene/scene.h"
+#include "tassilo/surface/surface.h"
 
 namespace tassilo {
 
 struct OverlayOptions {
   const MountedCamera* camera = nullptr;      ///< Borrowed. Without it nothing is drawn that lies on the floor.
   std::span<const std::uint8_t> labels = {};  ///< Color classes 0..8 of all pixels, row by row; empty: none.
+  /// Of the frame, borrowed. With it the free floor is tinted where carpet shows: lines keep their white. Without it
+  /// only the balls keep their color.
+  const Surface* surface = nullptr;
   int scale = 0;          ///< Picture pixels an image pixel, 1..16; 0: the smallest that makes the image 768 wide. [1]
   bool bird_view = true;  ///< The view from above beside the image; there is none without a camera.
   double bird_range = 6;  ///< The view from above reaches at least so far ahead of the robot. [m], > 0
@@ -28,7 +32,7 @@ struct OverlayOptions {
 /// from above: rings of 1 m around the robot (x up, y left), free space (unseen sectors grey), ball with 2-sigma
 /// ellipse and bracket from near to far, robots, goals, lines. The size depends on the frame's size and the options
 /// only, so that pictures of a sequence make a video; both sides are even. `options.labels` has width * height entries
-/// or none. A few milliseconds; safe from any thread.
+/// or none, `options.surface` the size of the frame. A few milliseconds; safe from any thread.
 Picture draw_overlay(const FrameView& frame, ColorRange range, const Scene& scene, const OverlayOptions& options = {});
 
 }  // namespace tassilo

@@ -183,6 +183,38 @@ TEST(DrawOverlay, FreeFloorIsGreenUpToItsRange) {
   EXPECT_GT(red[0], red[1] + 60);
 }
 
+// The tint tells of the floor; what lies on it keeps its color.
+TEST(DrawOverlay, BallsAndLinesOnTheFreeFloorKeepTheirColor) {
+  const MountedCamera camera = level_camera();
+  Scene scene;
+  scene.free_space = quarter(3, SectorState::free);
+  Ball ball;
+  ball.center = {100, 90};
+  ball.radius_px = 8;
+  ball.box = {92, 82, 109, 99};
+  scene.balls = {ball};
+  Surface surface;
+  surface.width = 200;
+  surface.height = 120;
+  surface.kinds.assign(200 * 120, SurfaceKind::carpet);
+  for (int r = 105; r < 110; ++r)
+    for (int c = 0; c < 200; ++c) surface.kinds[static_cast<std::size_t>(r * 200 + c)] = SurfaceKind::line;
+  const Surface* const none = nullptr;
+  for (const Surface* given : {none, static_cast<const Surface*>(&surface)}) {
+    SCOPED_TRACE(given != nullptr);
+    const Picture picture = drawn(scene, {.camera = &camera, .surface = given, .scale = 2});
+    const auto is_tinted = [&](int c, int r) {
+      return at(picture, 2 * c, 2 * r)[1] > at(picture, 2 * c, 2 * r)[0] + 20;
+    };
+    EXPECT_EQ(at(picture, 2 * 100, 2 * 90), kGray);
+    EXPECT_EQ(at(picture, 2 * 97, 2 * 93), kGray);
+    EXPECT_TRUE(is_tinted(100, 102));
+    EXPECT_TRUE(is_tinted(85, 90));
+    EXPECT_EQ(is_tinted(100, 107), given == nullptr);
+    EXPECT_TRUE(is_tinted(100, 112));
+  }
+}
+
 TEST(DrawOverlay, UnseenSectorsAndMissingCameraDrawNoFloor) {
   const MountedCamera camera = level_camera();
   Scene scene;
@@ -290,18 +322,40 @@ TEST(LabelLayout, StaysInsideAndApart) {
       EXPECT_EQ(overlap(boxes[0], labels[0]), 0);
     }
   }
-  LabelLayout crowd(bounds);
-  const Rect box{300, 200, 40, 40};
-  crowd.keep_clear(box);
+}
+
+// Rather than onto each other or onto what is kept free, labels move away from their box.
+TEST(LabelLayout, CrowdsStayReadable) {
+  LabelLayout layout({4, 4, 760, 400});
+  const Rect box{300, 200, 40, 40}, ball{330, 180, 60, 60};
+  layout.keep_clear(box);
+  layout.keep_clear(ball);
+  layout.keep_free(ball);
   std::vector<Rect> labels;
-  for (int i = 0; i < 4; ++i) labels.push_back(crowd.place(box, 120, 18));
-  for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < i; ++j)
-      EXPECT_EQ(overlap(labels[static_cast<std::size_t>(i)], labels[static_cast<std::size_t>(j)]), 0);
+  for (int i = 0; i < 12; ++i) {
+    const Rect label = layout.place(box, 120, 18);
+    EXPECT_EQ(overlap(label, ball), 0) << i;
+    for (const Rect& other : labels) EXPECT_EQ(overlap(label, other), 0) << i;
+    labels.push_back(label);
+  }
+}
+
+// A label may hide a box rather than move away from its own for a few pixels of it.
+TEST(LabelLayout, StaysNearItsBox) {
+  LabelLayout layout({4, 4, 760, 400});
+  const Rect box{300, 200, 40, 40};
+  layout.keep_clear(box);
+  for (const Rect& around :
+       {Rect{150, 175, 340, 8}, Rect{150, 255, 340, 8}, Rect{150, 175, 30, 80}, Rect{460, 175, 30, 80}})
+    layout.keep_clear(around);
+  const Rect label = layout.place(box, 120, 18);
+  EXPECT_GT(overlap(label, {box.x - 4 - 120, box.y - 4 - 18, box.width + 8 + 240, box.height + 8 + 36}),
+            .99 * 120 * 18);
 }
 
 TEST(OverlayText, SaysNumbersAsPeopleDo) {
   EXPECT_EQ(meters(1.857), "1.86 m");
+  EXPECT_EQ(meters(-.001), "0.00 m");
   EXPECT_EQ(percent(.974), "97 %");
   EXPECT_EQ(bearing_text(.2), "11° left");
   EXPECT_EQ(bearing_text(-.2), "11° right");

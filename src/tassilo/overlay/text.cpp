@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "tassilo/base/unsigned_zero.h"
 #include "tassilo/geometry/angle.h"
 
 namespace tassilo {
@@ -11,7 +12,7 @@ namespace tassilo {
 std::string fixed(double value, int decimals) {
   std::array<char, 400> text{};  // room for the largest double
   const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed, decimals).ptr;
-  return {text.data(), end};
+  return unsigned_zero({text.data(), end});
 }
 
 std::string meters(double value) { return fixed(value, 2) + " m"; }

@@ -51,6 +51,9 @@ class Canvas {
   void polyline(std::span<const CanvasPoint> points, const Pen& pen);
   /// All polygons as one area: shared edges leave no seams.
   void fill_polygons(std::span<const std::vector<CanvasPoint>> polygons, Ink fill);
+  /// Likewise where `shown`, a picture of the canvas's rectangle `place`, is 255: rows of `columns` bytes, 0 hides.
+  void fill_polygons_where(std::span<const std::vector<CanvasPoint>> polygons, Ink fill,
+                           std::span<const std::uint8_t> shown, int columns, const Rect& place);
   void stroke_circle(CanvasPoint center, double radius, const Pen& pen);
   void fill_circle(CanvasPoint center, double radius, Ink fill);
 
@@ -76,6 +79,7 @@ class Canvas {
   void set_ink(Ink ink);
   /// Strokes the current path and forgets it.
   void stroke(const Pen& pen);
+  void polygons_path(std::span<const std::vector<CanvasPoint>> polygons);
   void rounded_path(const Rect& rect, double radius);
 
   int width_, height_;
