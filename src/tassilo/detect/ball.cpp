@@ -2,14 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "tassilo/base/error.h"
 #include "tassilo/base/sort_stably.h"
 #include "tassilo/detect/edge.h"
+#include "tassilo/detect/internal/refusal.h"
 #include "tassilo/detect/sphere_fit.h"
 #include "tassilo/geometry/angle.h"
 #include "tassilo/region/algebra.h"
@@ -21,6 +24,8 @@
 
 namespace tassilo {
 namespace {
+
+using namespace std::string_view_literals;
 
 ColorClass ball_color(const FieldModel& field) { return color_class_from(field.ball.color).value_or(ColorClass::red); }
 
@@ -273,33 +278,34 @@ std::optional<SphereFit> fit_segment(const View& view, const Attempt& attempt, c
   return fit;
 }
 
-std::optional<Ball> try_ball(const View& view, const Attempt& attempt, const Region& segment,
-                             const RecycledVector<RimPoint>& rim, const BallOptions& options) {
+Verdict<Ball> try_ball(const View& view, const Attempt& attempt, const Region& segment,
+                       const RecycledVector<RimPoint>& rim, const BallOptions& options) {
   const PixelBox box = bounding_box(segment);
   const MountedCamera& camera = attempt.camera;
   const auto fit = fit_segment(view, attempt, rim, box, options);
-  if (!fit) return std::nullopt;
+  if (!fit) return "has no rim that fits a ball on the floor"sv;
   constexpr int corners = 48;  // of the disc as a polygon
   const auto around = outline(camera, fit->sphere, corners);
   const auto disc = disc_of(camera, fit->sphere, around, corners);
-  if (!disc) return std::nullopt;
+  if (!disc) return "is where a ball does not show as a disc"sv;
   const double distance_m = norm(fit->sphere.foot);
-  if (distance_m > longest_distance(view.field)) return std::nullopt;
+  if (distance_m > longest_distance(view.field)) return "would be a ball off the field"sv;
   const DiscView look = look_at_disc(view, around);
   const int open_disc = look.disc - look.hidden;
-  if (look.own < options.min_area_px || look.own < options.min_cover * open_disc) return std::nullopt;
+  if (look.own < options.min_area_px || look.own < options.min_cover * open_disc)
+    return "covers too little of the ball that would fit it"sv;
   const int whole = look.disc + look.clipped;
-  if (look.own < 0.03 * whole) return std::nullopt;  // a crescent too thin for any shape
+  if (look.own < 0.03 * whole) return "shows too little of a ball"sv;  // a crescent too thin for any shape
   // The segment must be about as large as the disc: a shirt that fills it and goes on is none.
-  if (area(segment) > 1.6 * look.own + 8) return std::nullopt;
+  if (area(segment) > 1.6 * look.own + 8) return "goes on beyond the ball that would fit it"sv;
   const bool cut = look.clipped > 0 || look.hidden > 0;
   if (!cut && (box.width() < options.min_width * 2 * disc->radius_px - 1 ||
                box.height() < options.min_height * 2 * disc->radius_px - 1))
-    return std::nullopt;
+    return "is smaller than the ball that would fit it"sv;
   // It rests on the floor: carpet shows below it, unless something hides its foot.
   const int foot_open = look.foot - look.foot_hidden;
   const double foot_share = foot_open > 0 ? static_cast<double>(look.foot_floor) / foot_open : 0.5;
-  if (foot_open > 0 && foot_share < 0.4) return std::nullopt;
+  if (foot_open > 0 && foot_share < 0.4) return "has no carpet below it"sv;
 
   Ball ball;
   ball.box = box;
@@ -341,29 +347,30 @@ bool may_stand(const View& view, const PixelBox& box) {
 }
 
 /// With the mount as calibrated.
-std::optional<Ball> steady_ball(const View& view, const Region& segment, const BallOptions& options) {
+Verdict<Ball> steady_ball(const View& view, const Region& segment, const BallOptions& options) {
   const MountedCamera& camera = view.optics->camera;
-  if (!has_plausible_size(view, camera, bounding_box(segment))) return std::nullopt;
+  if (!has_plausible_size(view, camera, bounding_box(segment)))
+    return "is too large for a ball there, or further away than the field is long"sv;
   const RecycledVector<RimPoint> rim = rim_of(view, fill_holes(segment));
   const auto open = static_cast<std::size_t>(std::ranges::count(rim, false, &RimPoint::hidden));
   // A robot behind the ball looks like one before it: with hardly any open rim, every point of it is better than none.
   const bool hardly_open = open < std::max<std::size_t>(6, rim.size() / 4);
-  if (auto ball = try_ball(view, {.camera = camera, .with_hidden = hardly_open}, segment, rim, options)) return ball;
-  if (hardly_open || open == rim.size()) return std::nullopt;
+  Verdict<Ball> ball = try_ball(view, {.camera = camera, .with_hidden = hardly_open}, segment, rim, options);
+  if (ball.object || hardly_open || open == rim.size()) return ball;
   return try_ball(view, {.camera = camera, .with_hidden = true}, segment, rim, options);
 }
 
 /// With the robot nodding, the smallest angle that explains the segment.
-std::optional<Ball> nodding_ball(const View& view, std::span<const MountedCamera> nodding, const Region& segment,
-                                 const BallOptions& options) {
+Verdict<Ball> nodding_ball(const View& view, std::span<const MountedCamera> nodding, const Region& segment,
+                           const BallOptions& options) {
   RecycledVector<RimPoint> rim;
   for (const MountedCamera& camera : nodding) {
     if (!has_plausible_size(view, camera, bounding_box(segment))) continue;
     if (rim.empty()) rim = rim_of(view, fill_holes(segment));
     const Attempt attempt{.camera = camera, .nod_sigma = radians(options.nod_step_deg), .with_hidden = true};
-    if (auto ball = try_ball(view, attempt, segment, rim, options)) return ball;
+    if (Verdict<Ball> ball = try_ball(view, attempt, segment, rim, options); ball.object) return ball;
   }
-  return std::nullopt;
+  return "fits no ball while the robot nods"sv;
 }
 
 /// The camera as it may look while the robot shakes, small angles first.
@@ -379,19 +386,19 @@ RecycledVector<MountedCamera> nodding_cameras(const MountedCamera& camera, const
 }
 
 /// Without a camera: round, and carpet below.
-std::optional<Ball> ball_in_image(const View& view, const Region& segment, const BallOptions& options) {
+Verdict<Ball> ball_in_image(const View& view, const Region& segment, const BallOptions& options) {
   const Region filled = fill_holes(segment);
   const std::int64_t pixels = area(filled);
-  if (pixels < 3 * options.min_area_px) return std::nullopt;
+  if (pixels < 3 * options.min_area_px) return "is too small to be told round"sv;
   const PixelBox box = bounding_box(filled);
   const ShapeFeatures shape = shape_features(filled);
   // An ideal disc has anisometry 1; cut by the border or partly hidden it may reach 2.
   const bool cut =
       box.x0 == 0 || box.y0 == 0 || box.x1 == view.segmentation.width || box.y1 == view.segmentation.height;
   // (0: all pixels on one line)
-  if (shape.anisometry < 1 || shape.anisometry > (cut ? 2.5 : 1.6)) return std::nullopt;
+  if (shape.anisometry < 1 || shape.anisometry > (cut ? 2.5 : 1.6)) return "is longer than a disc"sv;
   const double fill = static_cast<double>(pixels) / static_cast<double>(box.area());
-  if (fill < 0.6) return std::nullopt;  // pi / 4 for a disc
+  if (fill < 0.6) return "fills less of its box than a disc"sv;  // pi / 4 for a disc
   int floor = 0, below = 0;
   for (int c = box.x0; c < box.x1; ++c)
     for (const int r : {box.y1 + 1, box.y1 + 2})
@@ -400,7 +407,7 @@ std::optional<Ball> ball_in_image(const View& view, const Region& segment, const
         floor += view.surface.is_floor(c, r);
       }
   // With carpet in view a ball lies on it; without any, its shape is all there is.
-  if (below > 0 && floor == 0 && !view.segmentation.of(ColorClass::green).empty()) return std::nullopt;
+  if (below > 0 && floor == 0 && !view.segmentation.of(ColorClass::green).empty()) return "has no carpet below it"sv;
   const double foot_share = below > 0 ? static_cast<double>(floor) / below : 0.5;
   Ball ball;
   ball.box = box;
@@ -433,30 +440,44 @@ void BallOptions::check() const {
     throw Error("ball.max_nod_deg", "is " + std::to_string(max_nod_deg) + ", must be in [0, 10]");
 }
 
-RecycledVector<Ball> find_balls(const View& view, const BallOptions& options) {
+BallSearch search_balls(const View& view, const BallOptions& options) {
   // A line before or a highlight on the ball may split it by a pixel.
-  const Region joined = closing(view.segmentation.of(ball_color(view.field)), rectangle(3, 3));
+  const ColorClass color = ball_color(view.field);
+  const Region joined = closing(view.segmentation.of(color), rectangle(3, 3));
   RecycledVector<Region> segments = components(joined);
   std::erase_if(segments, [&](const Region& segment) {
     // One sample of chroma spans two columns: what is no wider is one sample's noise.
     return area(segment) < options.min_area_px || bounding_box(segment).width() < 3;
   });
+  if (segments.empty())
+    return {.balls = {}, .why = nothing_seen(to_string(color), options.min_area_px) + " and 3 columns"};
+  sort_stably(segments, std::greater<>{}, [](const Region& segment) { return area(segment); });
   RecycledVector<Ball> balls;
+  std::string_view refusal;  // of the largest segment
   const auto collect = [&](auto look) {
-    for (const Region& segment : segments)
-      if (auto ball = look(segment)) balls.push_back(std::move(*ball));
+    for (const Region& segment : segments) {
+      Verdict<Ball> ball = look(segment);
+      if (ball.object)
+        balls.push_back(std::move(*ball.object));
+      else if (refusal.empty())
+        refusal = ball.refusal;
+    }
   };
   if (view.optics == nullptr) {
     collect([&](const Region& segment) { return ball_in_image(view, segment, options); });
   } else {
-    std::erase_if(segments, [&](const Region& segment) { return !may_stand(view, bounding_box(segment)); });
+    const auto stands = [&](const Region& segment) { return may_stand(view, bounding_box(segment)); };
+    if (std::ranges::none_of(segments, stands))
+      return {.balls = {}, .why = largest_refused(to_string(color), segments.front(), "does not stand on the floor")};
+    std::erase_if(segments, std::not_fn(stands));
     collect([&](const Region& segment) { return steady_ball(view, segment, options); });
     // A ball that fits the mount as calibrated says that the robot does not nod.
-    if (balls.empty() && !segments.empty()) {
+    if (balls.empty()) {
       const RecycledVector<MountedCamera> nodding = nodding_cameras(view.optics->camera, options);
       collect([&](const Region& segment) { return nodding_ball(view, nodding, segment, options); });
     }
   }
+  if (balls.empty()) return {.balls = {}, .why = largest_refused(to_string(color), segments.front(), refusal)};
   sort_stably(balls, std::greater<>{}, &Ball::confidence);
   // Two pieces of one ball are one ball.
   RecycledVector<Ball> kept;
@@ -466,7 +487,11 @@ RecycledVector<Ball> find_balls(const View& view, const BallOptions& options) {
     });
     if (!same && kept.size() < static_cast<std::size_t>(options.max_balls)) kept.push_back(std::move(ball));
   }
-  return kept;
+  return {.balls = std::move(kept), .why = {}};
+}
+
+RecycledVector<Ball> find_balls(const View& view, const BallOptions& options) {
+  return search_balls(view, options).balls;
 }
 
 }  // namespace tassilo

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "tassilo/base/recycled.h"
+#include "tassilo/base/recycled_string.h"
 #include "tassilo/detect/view.h"
 #include "tassilo/scene/scene.h"
 
@@ -28,13 +29,20 @@ struct BallOptions {
   void check() const;         ///< Throws Error naming the first field out of range.
 };
 
-/// Balls, best first; empty when none.
+struct BallSearch {
+  RecycledVector<Ball> balls;  ///< Best first; empty when none.
+  RecycledString why;          ///< In plain words why there is none; empty when there is one.
+};
+
+/// Balls.
 ///
 /// With calibration a ball is a sphere that rests on the floor: its outline is fitted at sub-pixel accuracy, and what
 /// does not fit one (too large, too small, no carpet at its foot, off the field) is rejected. Without calibration a
 /// ball is a round segment of the ball's color above carpet, or above nothing known.
 ///
 /// cost     O(pixels of the ball's color); safe from any thread. source: DESIGN 6.5 and 6.6, fit own
+BallSearch search_balls(const View& view, const BallOptions& options = {});
+/// The balls alone.
 RecycledVector<Ball> find_balls(const View& view, const BallOptions& options = {});
 
 }  // namespace tassilo

@@ -1,8 +1,10 @@
 #include "tassilo/detect/ball.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <string>
 
 #include "tassilo/base/error.h"
 #include "tassilo/detect/sphere_fit.h"
@@ -96,6 +98,22 @@ TEST(FindBalls, WithoutCalibrationItTellsBoxAndConfidence) {
 TEST(FindBalls, NothingRedIsNoBall) {
   const Seen seen(test::cameras()[0], World{});
   EXPECT_TRUE(find_balls(seen.view()).empty());
+}
+
+TEST(SearchBalls, SaysWhyThereIsNone) {
+  const MountedCamera camera = test::cameras()[0];
+  const auto why = [&](const World& world, bool calibrated = true) {
+    return std::string(search_balls(Seen(camera, world, calibrated).view()).why);
+  };
+  EXPECT_EQ(why(ball_at({1.8, 0.2}, 0.105)), "");
+  EXPECT_EQ(why(World{}), "no red region of 4 px or more and 3 columns");
+  World world;
+  world.spheres.push_back({{2.5, 0.3, 0.6}, 0.105});  // before the wall, above the floor
+  EXPECT_THAT(why(world), testing::MatchesRegex(
+                              "the largest red region, [0-9]+ px at .[0-9]+, [0-9]+., does not stand on the floor"));
+  EXPECT_THAT(why(world, false), testing::EndsWith("has no carpet below it"));
+  world.spheres = {{{1.2, 0.3, 0.03}, 0.03}};
+  EXPECT_THAT(why(world), testing::StartsWith("the largest red region, "));
 }
 
 TEST(FitRestingSphere, ComesBackFromItsOwnOutline) {

@@ -12,6 +12,7 @@
 #include "tassilo/base/median.h"
 #include "tassilo/base/sort_stably.h"
 #include "tassilo/detect/edge.h"
+#include "tassilo/detect/internal/refusal.h"
 #include "tassilo/geometry/angle.h"
 #include "tassilo/region/algebra.h"
 #include "tassilo/region/components.h"
@@ -21,6 +22,7 @@ namespace tassilo {
 namespace {
 
 using std::numbers::pi;
+using namespace std::string_view_literals;
 
 /// One piece of a goal's panel.
 struct Piece {
@@ -217,21 +219,36 @@ std::optional<Mouth> fit_mouth(const View& view, const End& left, const End& rig
   return Mouth{middle + half, middle - half};
 }
 
-std::optional<Goal> goal_of(const View& view, GoalColor color, const FieldModel::Goal& model,
+/// Why a piece is no goal; empty if it is one.
+std::string_view refusal_of(const View& view, const Piece& piece, const FieldModel::Goal& model,
                             const GoalOptions& options) {
+  const int open = piece.columns - piece.hidden;
+  if (piece.on_floor < std::max(2.0, options.min_foot_share * open)) return "does not stand on the floor"sv;
+  if (view.optics == nullptr) return {};
+  if (!piece.foot) return "stands where the floor is out of view"sv;
+  if (norm(*piece.foot) > longest_distance(view.field)) return "stands off the field"sv;
+  return has_goal_height(view, piece, model.height) ? ""sv : "is not as high as a goal where it stands"sv;
+}
+
+/// The goal of a color, or why there is none.
+struct GoalVerdict {
+  std::optional<Goal> goal;
+  RecycledString why;
+};
+GoalVerdict goal_of(const View& view, GoalColor color, const FieldModel::Goal& model, const GoalOptions& options) {
   const ColorClass color_class = color == GoalColor::yellow ? ColorClass::yellow : ColorClass::blue;
   const Region joined = closing(view.segmentation.of(color_class), rectangle(3, 3));
   RecycledVector<Piece> standing, floating;
   for (Region& part : components(joined)) {
     if (area(part) < options.min_area_px) continue;
     Piece piece = piece_of(view, std::move(part));
-    const int open = piece.columns - piece.hidden;
-    const bool stands = piece.on_floor >= std::max(2.0, options.min_foot_share * open) &&
-                        (view.optics == nullptr || (piece.foot && norm(*piece.foot) <= longest_distance(view.field) &&
-                                                    has_goal_height(view, piece, model.height)));
-    (stands ? standing : floating).push_back(std::move(piece));
+    (refusal_of(view, piece, model, options).empty() ? standing : floating).push_back(std::move(piece));
   }
-  if (standing.empty()) return std::nullopt;
+  if (standing.empty() && floating.empty()) return {{}, nothing_seen(to_string(color), options.min_area_px)};
+  if (standing.empty()) {
+    const Piece& largest = *std::ranges::max_element(floating, {}, [](const Piece& p) { return area(p.region); });
+    return {{}, largest_refused(to_string(color), largest.region, refusal_of(view, largest, model, options))};
+  }
   // The largest piece is the goal; others belong to it when together they are no wider than a goal.
   sort_stably(standing, std::greater<>{}, [](const Piece& p) { return area(p.region); });
   PixelBox box = standing.front().box;
@@ -257,7 +274,7 @@ std::optional<Goal> goal_of(const View& view, GoalColor color, const FieldModel:
   Goal goal;
   goal.color = color;
   goal.box = box;
-  if (view.optics == nullptr) return goal;
+  if (view.optics == nullptr) return {goal, {}};
   const Region whole = union_of(parts);
   const auto left = end_of(view, whole, -1, options), right = end_of(view, whole, 1, options);
   if (left && right) {
@@ -265,7 +282,7 @@ std::optional<Goal> goal_of(const View& view, GoalColor color, const FieldModel:
       goal.position = 0.5 * (mouth->left + mouth->right);
       goal.bearing = bearing(*goal.position);
       goal.posts = {{PostSide::left, mouth->left}, {PostSide::right, mouth->right}};
-      return goal;
+      return {goal, {}};
     }
   }
   if (left && left->foot) goal.posts.push_back({PostSide::left, *left->foot});
@@ -274,7 +291,7 @@ std::optional<Goal> goal_of(const View& view, GoalColor color, const FieldModel:
   const auto middle = floor_at_range(camera, {(box.x0 + box.x1 - 1) / 2.0, (box.y0 + box.y1 - 1) / 2.0},
                                      distance(*standing.front().foot, foot_of(camera)));
   if (middle) goal.bearing = bearing(*middle);
-  return goal;
+  return {goal, {}};
 }
 
 }  // namespace
@@ -287,14 +304,23 @@ void GoalOptions::check() const {
   if (!(foot_sigma_px > 0)) throw Error("goal.foot_sigma_px", "is " + std::to_string(foot_sigma_px) + ", must be > 0");
 }
 
-RecycledVector<Goal> find_goals(const View& view, const GoalOptions& options) {
-  RecycledVector<Goal> goals;
+GoalSearch search_goals(const View& view, const GoalOptions& options) {
+  GoalSearch search;
   for (const GoalColor color : {GoalColor::yellow, GoalColor::blue}) {
     const auto model = std::ranges::find(view.field.goals, color, &FieldModel::Goal::color);
     if (model == view.field.goals.end()) continue;
-    if (auto goal = goal_of(view, color, *model, options)) goals.push_back(std::move(*goal));
+    GoalVerdict verdict = goal_of(view, color, *model, options);
+    if (verdict.goal)
+      search.goals.push_back(std::move(*verdict.goal));
+    else
+      search.why.push_back(std::move(verdict.why));
   }
-  return goals;
+  if (view.field.goals.empty()) search.why.emplace_back("the field has no colored goals");
+  return search;
+}
+
+RecycledVector<Goal> find_goals(const View& view, const GoalOptions& options) {
+  return search_goals(view, options).goals;
 }
 
 }  // namespace tassilo

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "tassilo/base/recycled.h"
+#include "tassilo/base/recycled_string.h"
 #include "tassilo/detect/view.h"
 #include "tassilo/scene/scene.h"
 
@@ -15,6 +16,11 @@ struct GoalOptions {
   void check() const;          ///< Throws Error naming the first field out of range.
 };
 
+struct GoalSearch {
+  RecycledVector<Goal> goals;
+  RecycledVector<RecycledString> why;  ///< For each color without a goal, in plain words why there is none.
+};
+
 /// Goals of the field's model, one entry a color, yellow first; empty when none.
 ///
 /// A goal is what shows a goal's color, stands on the floor and has a goal's height there; its pieces left and right of
@@ -22,6 +28,8 @@ struct GoalOptions {
 /// fitted to their bearings and feet. Without calibration only boxes and colors are told.
 ///
 /// cost     O(pixels of the goal colors); safe from any thread. source: own
+GoalSearch search_goals(const View& view, const GoalOptions& options = {});
+/// The goals alone.
 RecycledVector<Goal> find_goals(const View& view, const GoalOptions& options = {});
 
 }  // namespace tassilo

@@ -1,6 +1,10 @@
 #include "tassilo/detect/goal.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
 
 #include "tassilo/detect/test_view.h"
 #include "tassilo/geometry/angle.h"
@@ -73,6 +77,25 @@ TEST(FindGoals, YellowThatDoesNotStandOnTheFloorIsNone) {
   world.spheres.push_back({{4.0, 0.5, 0.8}, 0.3, test::kYellow});  // a shirt above the wall
   const Seen seen(test::cameras()[1], world);
   EXPECT_TRUE(find_goals(seen.view()).empty());
+}
+
+TEST(SearchGoals, SaysOfEachColorWhyThereIsNone) {
+  World world;
+  const auto why = [&] {
+    Seen seen(test::cameras()[1], world);
+    seen.field.goals.push_back({GoalSide::plus_x, GoalColor::blue, 1.5, 0.9, 0.5});
+    std::vector<std::string> reasons;
+    for (const RecycledString& reason : search_goals(seen.view()).why) reasons.emplace_back(reason);
+    return reasons;
+  };
+  const std::string no_blue = "no blue region of 20 px or more";
+  EXPECT_THAT(why(), testing::ElementsAre("no yellow region of 20 px or more", no_blue));
+  world.spheres.push_back({{4.0, 0.5, 0.8}, 0.3, test::kYellow});
+  EXPECT_THAT(why(), testing::ElementsAre(testing::EndsWith("does not stand on the floor"), no_blue));
+  world.spheres.clear();
+  world.wall_x = 3;
+  world.goal = {{-0.75, 0.75}};
+  EXPECT_THAT(why(), testing::ElementsAre(no_blue));
 }
 
 }  // namespace

@@ -176,7 +176,7 @@ Scene scene_of(const Value& root) {
   for (const Value& line : map.at("lines").list()) add_line(line, scene);
   if (const Value space = map.at("free_space"); !space.is_null()) scene.free_space = free_space_of(space);
   for (const auto& [subject, reason] : map.at("why").any_map().entries())
-    scene.why.emplace_back(subject, reason.string());
+    scene.why.emplace_back(subject, std::string_view(reason.string()));
   const Map timing = map.at("timing_ms").any_map();
   timing.at("total");
   for (const auto& [stage, ms] : timing.entries()) scene.timing.push_back({stage, ms.number(0)});

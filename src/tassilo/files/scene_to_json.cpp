@@ -142,7 +142,7 @@ Json lines_of(const Scene& scene) {
 Json why_of(const Scene& scene) {
   Json why = Json::object();
   for (const auto& [subject, reason] : scene.why)
-    why[subject] = why.contains(subject) ? why[subject].get<std::string>() + "; " + reason : reason;
+    why[subject] = (why.contains(subject) ? why[subject].get<std::string>() + "; " : "").append(reason);
   return why;
 }
 

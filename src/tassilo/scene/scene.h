@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "tassilo/base/recycled.h"
+#include "tassilo/base/recycled_string.h"
 #include "tassilo/field/field_model.h"
 #include "tassilo/geometry/box.h"
 #include "tassilo/geometry/point.h"
@@ -110,8 +111,8 @@ struct Scene {
   RecycledVector<LineSeen> lines;
   RecycledVector<CircleSeen> circles;
   std::optional<FreeSpace> free_space;
-  RecycledVector<std::pair<std::string, std::string>> why;  ///< Subject -> short reason of acceptance or refusal.
-  RecycledVector<StageTime> timing;                         ///< In the order they ran; "total" last.
+  RecycledVector<std::pair<std::string, RecycledString>> why;  ///< Subject -> short reason of acceptance or refusal.
+  RecycledVector<StageTime> timing;                            ///< In the order they ran; "total" last.
 };
 
 std::string_view to_string(GoalColor color);

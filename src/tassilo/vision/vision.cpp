@@ -83,8 +83,12 @@ Scene Vision::operator()(const Frame& frame, VisionWorkspace& workspace) const {
   });
 
   const View view{frame.view, segmentation, workspace.surface, field_, optics_.get()};
-  scene.balls = timed(scene, "balls", [&] { return find_balls(view, options_.ball); });
-  scene.goals = timed(scene, "goals", [&] { return find_goals(view, options_.goal); });
+  BallSearch balls = timed(scene, "balls", [&] { return search_balls(view, options_.ball); });
+  scene.balls = std::move(balls.balls);
+  if (!balls.why.empty()) scene.why.emplace_back("balls", std::move(balls.why));
+  GoalSearch goals = timed(scene, "goals", [&] { return search_goals(view, options_.goal); });
+  scene.goals = std::move(goals.goals);
+  for (RecycledString& why : goals.why) scene.why.emplace_back("goals", std::move(why));
   scene.robots = timed(scene, "robots", [&] { return find_robots(view, options_.robot); });
   if (sectors_) {
     Lines lines = timed(scene, "lines", [&] { return find_lines(view, options_.line); });
