@@ -21,6 +21,7 @@
 #include "tassilo/region/fill.h"
 #include "tassilo/region/morphology.h"
 #include "tassilo/region/raster.h"
+#include "tassilo/region/relation.h"
 
 namespace tassilo {
 namespace {
@@ -60,11 +61,7 @@ RecycledVector<RimPoint> rim_of(const View& view, const Region& segment) {
   const auto runs = segment.runs();
   std::span<const PixelRun> above;
   for (std::size_t i = 0; i < runs.size();) {
-    const auto row_at = [&](std::size_t from) {
-      std::size_t end = from;
-      while (end < runs.size() && runs[end].row == runs[from].row) ++end;
-      return runs.subspan(from, end - from);
-    };
+    const auto row_at = [&](std::size_t from) { return runs.subspan(from, row_end(runs, from) - from); };
     const auto here = row_at(i);
     i += here.size();
     const int row = here.front().row;
@@ -150,21 +147,6 @@ struct DiscView {
   int foot_floor = 0, foot_hidden = 0;  ///< Of these, on the floor; on a robot.
 };
 
-/// Pixels that two regions share. O(log runs of `large` + runs of both in the rows of `small`).
-int shared_pixels(const Region& small, const Region& large) {
-  if (small.empty()) return 0;
-  const auto runs = large.runs();
-  auto other = std::ranges::lower_bound(runs, small.runs().front().row, {}, &PixelRun::row);
-  int pixels = 0;
-  for (const PixelRun& run : small.runs()) {
-    while (other != runs.end() && (other->row < run.row || (other->row == run.row && other->end <= run.begin))) ++other;
-    // The last one may reach into the next run of `small`, too.
-    for (auto it = other; it != runs.end() && it->row == run.row && it->begin < run.end; ++it)
-      pixels += std::min(run.end, it->end) - std::max(run.begin, it->begin);
-  }
-  return pixels;
-}
-
 DiscView look_at_disc(const View& view, const RecycledVector<OutlinePoint>& rim) {
   DiscView look;
   RecycledVector<PixelPoint> polygon;
@@ -183,9 +165,9 @@ DiscView look_at_disc(const View& view, const RecycledVector<OutlinePoint>& rim)
   const Region whole = region_from_polygon(polygon, {-w, -h, 2 * w, 2 * h}), disc = clipped(whole, {0, 0, w, h});
   look.disc = static_cast<int>(area(disc));
   look.clipped = static_cast<int>(area(whole)) - look.disc;
-  look.own = shared_pixels(disc, view.segmentation.of(ball_color(view.field)));
+  look.own = static_cast<int>(common_area(disc, view.segmentation.of(ball_color(view.field))));
   for (const ColorClass color : kColorClasses)
-    if (view.is_robot(color)) look.hidden += shared_pixels(disc, view.segmentation.of(color));
+    if (view.is_robot(color)) look.hidden += static_cast<int>(common_area(disc, view.segmentation.of(color)));
   return look;
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 
@@ -28,16 +29,16 @@ TEST(Affine, AsksThePixelNearestToTheCentreMappedBack) {
                             rotation_about({-11.3, 2.9}, -2.41),
                             {1.37, .21, 3.317, -.33, .71, 1.173},
                             {-.51, 0, 7.123, .1, 2.713, .441}};
-  for (unsigned seed = 0; seed < kRandomCases; ++seed)
-    for (const AffineMap& map : maps) {
-      SCOPED_TRACE(seed);
-      const Region region = random_case(seed).region;
-      const AffineMap back = inverse(map);
-      EXPECT_EQ(mapped(region, map), region_by_pixel({-150, -150, 150, 150}, [&](int c, int r) {
-                  const PixelPoint p = back * PixelPoint{double(c), double(r)};
-                  return contains(region, int(std::floor(p.x + .5)), int(std::floor(p.y + .5)));
-                }));
-    }
+  for (unsigned seed = 0; seed < kRandomCases; ++seed) {
+    SCOPED_TRACE(seed);
+    const Region region = random_case(seed).region;
+    const AffineMap& map = maps[seed / 4 % std::size(maps)];  // each map meets every kind of region
+    const AffineMap back = inverse(map);
+    EXPECT_EQ(mapped(region, map), region_by_pixel({-150, -150, 150, 150}, [&](int c, int r) {
+                const PixelPoint p = back * PixelPoint{double(c), double(r)};
+                return contains(region, int(std::floor(p.x + .5)), int(std::floor(p.y + .5)));
+              }));
+  }
 }
 
 TEST(Affine, WholeStepsAndQuarterTurnsAreExact) {

@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <cstdlib>
 #include <set>
 #include <utility>
 #include <vector>
 
 #include "tassilo/region/algebra.h"
+#include "tassilo/region/features.h"
 #include "tassilo/region/internal/test_regions.h"
 
 namespace tassilo {
@@ -65,6 +67,24 @@ TEST(Components, KeepEveryPixelOnce) {
   }
 }
 
+TEST(ComponentFeatures, AreThoseOfTheComponentsInOrder) {
+  for (unsigned seed = 0; seed < kRandomCases; ++seed) {
+    SCOPED_TRACE(seed);
+    const Region region = random_case(seed).region;
+    for (const Connectivity connectivity : {Connectivity::four, Connectivity::eight}) {
+      const RecycledVector<Region> parts = components(region, connectivity);
+      const RecycledVector<ComponentFeatures> features = component_features(region, connectivity);
+      ASSERT_EQ(features.size(), parts.size());
+      for (std::size_t i = 0; i < parts.size(); ++i) {
+        const ShapeFeatures shape = shape_features(parts[i]);
+        EXPECT_EQ(features[i].area, shape.area);
+        EXPECT_EQ(features[i].box, shape.box);
+        EXPECT_NEAR(distance(features[i].center, shape.center), 0, 1e-9);
+      }
+    }
+  }
+}
+
 TEST(Components, NestedSpiralsJoinLate) {
   // A comb whose teeth meet in the last row only, and one that meets in the first row only.
   RunVector teeth;
@@ -83,6 +103,7 @@ TEST(Components, NestedSpiralsJoinLate) {
 
 TEST(Components, OfNothingAreNone) {
   EXPECT_TRUE(components(Region{}).empty());
+  EXPECT_TRUE(component_features(Region{}).empty());
   EXPECT_EQ(label_runs(Region{}).count, 0);
 }
 

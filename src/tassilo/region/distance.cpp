@@ -9,7 +9,6 @@
 
 #include "tassilo/base/contract.h"
 #include "tassilo/region/algebra.h"
-#include "tassilo/region/internal/row_sweep.h"
 
 namespace tassilo {
 namespace {

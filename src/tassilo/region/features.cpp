@@ -11,7 +11,6 @@
 #include "tassilo/region/algebra.h"
 #include "tassilo/region/fill.h"
 #include "tassilo/region/internal/pixel_patterns.h"
-#include "tassilo/region/internal/row_sweep.h"
 #include "tassilo/region/raster.h"
 
 namespace tassilo {

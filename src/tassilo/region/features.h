@@ -30,6 +30,7 @@ struct EquivalentEllipse {
   /// axes are equal. Rows grow downwards, so the axis points along (column, row) = (cos phi, -sin phi). [rad]
   double phi = 0;
 };
+/// That ellipse from the moments; where rb is but rounding noise it is 0. O(1).
 EquivalentEllipse equivalent_ellipse(const SecondMoments& moments);
 
 /// The features that one or two looks at each run give.

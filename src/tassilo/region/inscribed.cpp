@@ -6,7 +6,6 @@
 
 #include "tassilo/base/recycled.h"
 #include "tassilo/region/distance.h"
-#include "tassilo/region/internal/row_sweep.h"
 
 namespace tassilo {
 namespace {

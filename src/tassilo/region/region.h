@@ -1,6 +1,7 @@
 #pragma once
 
 #include <compare>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -45,6 +46,13 @@ class Region {
  private:
   RunVector runs_;
 };
+
+/// Index behind the last run of the row of runs[first]; sorted runs. O(runs of the row).
+inline std::size_t row_end(std::span<const PixelRun> runs, std::size_t first) {
+  std::size_t end = first + 1;
+  while (end < runs.size() && runs[end].row == runs[first].row) ++end;
+  return end;
+}
 
 /// Number of pixels. O(R).
 std::int64_t area(const Region& region);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <span>
 #include <tuple>
 
 namespace tassilo {
@@ -11,7 +13,11 @@ namespace {
 template <class Visit>
 void for_each_common(const Region& first, const Region& second, Visit visit) {
   const auto a = first.runs(), b = second.runs();
-  std::size_t ia = 0, ib = 0;
+  if (a.empty() || b.empty()) return;
+  const auto begin = [](std::span<const PixelRun> runs, std::int16_t row) {
+    return static_cast<std::size_t>(std::ranges::lower_bound(runs, row, {}, &PixelRun::row) - runs.begin());
+  };
+  std::size_t ia = begin(a, b.front().row), ib = begin(b, a.front().row);
   while (ia < a.size() && ib < b.size()) {
     const PixelRun &run_a = a[ia], &run_b = b[ib];
     const int common = std::min(run_a.end, run_b.end) - std::max(run_a.begin, run_b.begin);

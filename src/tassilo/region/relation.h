@@ -6,8 +6,8 @@
 
 namespace tassilo {
 
-// How two regions lie to each other, without making a third. Equality is `==`. All O(Ra + Rb), no allocation, pure,
-// safe from any thread.
+// How two regions lie to each other, without making a third. Equality is `==`. No allocation, pure, safe
+// from any thread. O(log R + runs in the rows that both have); where an area enters, O(R).
 
 /// Number of pixels in both: area(intersection(a, b)).
 std::int64_t common_area(const Region& a, const Region& b);

@@ -8,7 +8,6 @@
 
 #include "tassilo/base/contract.h"
 #include "tassilo/region/internal/coordinate.h"
-#include "tassilo/region/internal/row_sweep.h"
 
 namespace tassilo {
 namespace {

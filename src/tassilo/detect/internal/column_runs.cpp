@@ -33,8 +33,7 @@ void add_column_runs(const Region& region, ColorClass color, int width, Recycled
   };
   for (std::size_t i = 0; i < runs.size();) {
     const int row = runs[i].row;
-    std::size_t end = i;
-    while (end < runs.size() && runs[end].row == row) ++end;
+    const std::size_t end = row_end(runs, i);
     if (!above.empty() && above.front().row < row - 1) compare({}, above.front().row + 1);
     compare(runs.subspan(i, end - i), row);
     i = end;

@@ -9,13 +9,6 @@
 
 namespace tassilo {
 
-/// Index behind the last run of the row of runs[first]. O(runs of the row).
-inline std::size_t row_end(std::span<const PixelRun> runs, std::size_t first) {
-  std::size_t end = first + 1;
-  while (end < runs.size() && runs[end].row == runs[first].row) ++end;
-  return end;
-}
-
 /// Walks two rows of runs together, whatever their row numbers: calls visit(column, in_a, in_b) by rising column
 /// wherever being in a or in b changes; the flags hold from that column on. O(|a| + |b|).
 template <class Visit>
