@@ -369,6 +369,16 @@ void bind_gray(py::module_& module) {
       "image"_a);
 }
 
+CocoCounts coco_counts_of(const std::string& counts) {
+  return choice<CocoCounts>("counts", counts, {{"string", CocoCounts::string}, {"list", CocoCounts::list}});
+}
+
+CocoMask coco_mask_of(const Region& region, int width, int height) {
+  if (width < 1 || height < 1 || width > kHigh || height > kHigh)
+    refuse("image", "is " + std::to_string(width) + "x" + std::to_string(height) + ", must be 1 .. 32767");
+  return {width, height, region};
+}
+
 void bind_files(py::module_& module) {
   module.def("read_png_region", &read_png_region, "The pixels of a gray PNG that are not 0.", "path"_a);
   module.def(
@@ -382,17 +392,31 @@ void bind_files(py::module_& module) {
   module.def(
       "coco_json",
       [](const Region& region, int width, int height, const std::string& counts) {
-        if (width < 1 || height < 1 || width > kHigh || height > kHigh)
-          refuse("image", "is " + std::to_string(width) + "x" + std::to_string(height) + ", must be 1 .. 32767");
-        const auto kind =
-            choice<CocoCounts>("counts", counts, {{"string", CocoCounts::string}, {"list", CocoCounts::list}});
-        return coco_json({width, height, region}, kind);
+        return coco_json(coco_mask_of(region, width, height), coco_counts_of(counts));
       },
       "The region as a COCO mask of an image of this size: run lengths as a 'string' or a 'list', in JSON.", "region"_a,
       "width"_a, "height"_a, "counts"_a = "string");
   module.def(
       "region_from_coco_json", [](const std::string& text) { return coco_mask_from_json(text, "mask").region; },
       "The region of such a text.", "text"_a);
+  module.def(
+      "read_coco_masks",
+      [](const std::filesystem::path& path) {
+        std::vector<Region> regions;
+        for (CocoMask& mask : read_coco_masks(path)) regions.push_back(std::move(mask.region));
+        return regions;
+      },
+      "The regions of a file with a JSON list of COCO masks.", "path"_a);
+  module.def(
+      "write_coco_masks",
+      [](const std::filesystem::path& path, const std::vector<Region>& regions, int width, int height,
+         const std::string& counts) {
+        std::vector<CocoMask> masks;
+        for (const Region& region : regions) masks.push_back(coco_mask_of(region, width, height));
+        write_coco_masks(path, masks, coco_counts_of(counts));
+      },
+      "Writes regions of an image of this size as a JSON list of COCO masks.", "path"_a, "regions"_a, "width"_a,
+      "height"_a, "counts"_a = "string");
 }
 
 }  // namespace

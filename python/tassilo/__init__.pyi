@@ -318,6 +318,12 @@ def coco_json(region: Region, width: int, height: int, counts: str = 'string') -
 def region_from_coco_json(text: str) -> Region:
     """The region of such a text."""
 
+def read_coco_masks(path: Union[str, os.PathLike[str]]) -> List[Region]:
+    """The regions of a file with a JSON list of COCO masks."""
+
+def write_coco_masks(path: Union[str, os.PathLike[str]], regions: List[Region], width: int, height: int, counts: str = 'string') -> None:
+    """Writes regions of an image of this size as a JSON list of COCO masks."""
+
 class Frame:
     """One camera image in a camera's own YUV layout, with what is known about it.
 
@@ -450,6 +456,9 @@ def segment(frame: Frame, colors: ColorTable) -> Segmentation:
 
 def segment_opened(frame: Frame, colors: ColorTable) -> Segmentation:
     """The same with every region opened by 3 x 3 pixels: single odd pixels become no_color."""
+
+def opening3x3(segmentation: Segmentation) -> Segmentation:
+    """Opens every region of a segmentation by 3 x 3 pixels, as segment_opened does on the way."""
 
 def train_colors(samples: object, held_out: object = None, images_range: Literal['limited', 'full'] = 'limited', options: Dict[str, float] = {}) -> ColorTable:
     """A table from labelled regions: the path of a samples.yaml, or (frame, region, class name) tuples.

@@ -124,5 +124,6 @@ def test_an_opened_segmentation_has_every_region_opened():
     table = tassilo.train_colors(samples())
     noisy = picture(9)
     plain, opened = tassilo.segment(noisy, table), tassilo.segment_opened(noisy, table)
+    assert tassilo.opening3x3(plain).regions == opened.regions
     for color in ("red", "green"):
         assert opened[color] == tassilo.opening(plain[color], tassilo.rectangle(3, 3))

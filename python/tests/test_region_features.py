@@ -153,3 +153,10 @@ def test_regions_come_back_from_files(tmp_path):
     assert np.array_equal(np.repeat(np.arange(len(lengths)) % 2, lengths).reshape(mask.shape[::-1]).T, mask)
     with pytest.raises(tassilo.Error, match="mask"):
         tassilo.region_from_coco_json("{}")
+    regions = [region, Region()]
+    height, width = mask.shape
+    tassilo.write_coco_masks(tmp_path / "masks.json", regions, width, height, "list")
+    assert tassilo.read_coco_masks(tmp_path / "masks.json") == regions
+    with pytest.raises(ValueError, match="image"):
+        tassilo.write_coco_masks(tmp_path / "masks.json", regions, 0, height)
+    assert tassilo.read_coco_masks(tmp_path / "masks.json") == regions

@@ -95,7 +95,7 @@ Segmentation segment(const FrameView& frame, const Classifier& classifier, Segme
   expects(frame.width() <= 32767 && frame.height() <= 32767, "run coordinates fit 16 bit");
   set_size(recycled, frame.width(), frame.height());
   RunSinks sinks(recycled);
-  RowLabeler label(frame, classifier, color_kernel(kernel_in_use()));
+  RowLabeler label(frame, classifier, version_in_use(color_kernels()));
   const RowRuns runs = sinks.row_runs();
   for (int r = 0; r < frame.height(); ++r) sinks.add_row(r, label(r, row_of(recycled, r), &runs));
   std::move(sinks).finish(recycled);
@@ -106,7 +106,7 @@ Segmentation segment_opened(const FrameView& frame, const Classifier& classifier
   expects(frame.width() <= 32767 && frame.height() <= 32767, "run coordinates fit 16 bit");
   set_size(recycled, frame.width(), frame.height());
   RunSinks sinks(recycled);
-  const ColorKernel& kernel = color_kernel(kernel_in_use());
+  const ColorKernel& kernel = version_in_use(color_kernels());
   RowLabeler label(frame, classifier, kernel);
   RecycledBuffer<std::uint8_t> rows(3 * static_cast<std::size_t>(frame.width()));
   open_rows(recycled, sinks, kernel, [&](int r) {
@@ -123,7 +123,7 @@ Segmentation opening3x3(const Segmentation& segmentation, Segmentation recycled)
   expects(segmentation.labels.size() == width * static_cast<std::size_t>(segmentation.height), "one label a pixel");
   set_size(recycled, segmentation.width, segmentation.height);
   RunSinks sinks(recycled);
-  open_rows(recycled, sinks, color_kernel(kernel_in_use()),
+  open_rows(recycled, sinks, version_in_use(color_kernels()),
             [&](int r) { return segmentation.labels.data() + static_cast<std::size_t>(r) * width; });
   std::move(sinks).finish(recycled);
   return recycled;

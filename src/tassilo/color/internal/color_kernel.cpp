@@ -1,5 +1,6 @@
 #include "tassilo/color/internal/color_kernel.h"
 
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstring>
@@ -75,22 +76,17 @@ int dilate_rows(const ThreeRows& rows, int width, std::uint8_t* labels, const Ro
 
 }  // namespace
 
-constinit const ColorKernel plain_color_kernel{claims_of, labels_of, erode_rows, dilate_rows};
+constinit const ColorKernel plain_color_kernel{Kernel::plain, claims_of, labels_of, erode_rows, dilate_rows};
 
-const ColorKernel& color_kernel(Kernel kernel) {
-  switch (kernel) {
+std::span<const ColorKernel> color_kernels() {
 #if defined(__x86_64__)
-    case Kernel::avx512:
-      return avx512_color_kernel;
-    case Kernel::avx2:
-      return avx2_color_kernel;
+  static const std::array kernels{plain_color_kernel, avx2_color_kernel, avx512_color_kernel};
 #elif defined(__aarch64__)
-    case Kernel::neon:
-      return neon_color_kernel;
+  static const std::array kernels{plain_color_kernel, neon_color_kernel};
+#else
+  static const std::array kernels{plain_color_kernel};
 #endif
-    default:
-      return plain_color_kernel;
-  }
+  return kernels;
 }
 
 }  // namespace tassilo

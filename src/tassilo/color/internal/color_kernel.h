@@ -1,13 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "tassilo/base/kernel.h"
 #include "tassilo/color/internal/kernel_table.h"
 #include "tassilo/image/frame.h"
 
 // To add a kernel: 1. its name in base/kernel.h and what it needs in kernel.cpp; 2. a source here with its
-// functions (or those of a simpler one); 3. a case in `color_kernel`. The tests run every supported kernel against the
+// functions (or those of a simpler one); 3. its place in `color_kernels`. The tests run every supported kernel against the
 // definition. Others: region/internal/plane_kernel.h
 // and thinning.h, contour/internal/gradient.h.
 
@@ -27,6 +28,7 @@ struct RowRuns {
 
 /// The inner loops of segmentation, one row at a time. All kernels give the same bytes.
 struct ColorKernel {
+  Kernel kernel;
   /// Claims of `pairs` chroma cells.
   void (*claims)(const KernelTable& table, const YuvRow& row, int pairs, std::uint8_t* claims);
   /// Labels 0..8 of `width` pixels from the claims of (width + 1) / 2 cells, and their runs unless `runs` is null.
@@ -39,8 +41,8 @@ struct ColorKernel {
   int (*dilate)(const ThreeRows& rows, int width, std::uint8_t* labels, const RowRuns& runs);
 };
 
-/// The functions to take for a kernel.
-const ColorKernel& color_kernel(Kernel kernel);
+/// Those of this build, of which the machine may not run all: the plain one first, the fastest last.
+std::span<const ColorKernel> color_kernels();
 
 extern const ColorKernel plain_color_kernel;
 #if defined(__x86_64__)

@@ -310,7 +310,7 @@ TASSILO_AVX512 int dilate_rows(const ThreeRows& rows, int width, std::uint8_t* l
 
 }  // namespace
 
-constinit const ColorKernel avx512_color_kernel{claims_of, labels_of, erode_rows, dilate_rows};
+constinit const ColorKernel avx512_color_kernel{Kernel::avx512, claims_of, labels_of, erode_rows, dilate_rows};
 
 }  // namespace tassilo
 

@@ -25,7 +25,7 @@ void for_bands(const PlaneFrame& frame, Use use) {
 template <class Join, class Triple, class Nine>
 BitPlane over_boxes(BitPlane plane, const PlaneFrame& frame, std::span<const PixelBox> boxes, int sign, Join join,
                     Triple triple, Nine nine) {
-  const PlaneKernel& kernel = plane_kernel(kernel_in_use());
+  const PlaneKernel& kernel = version_in_use(plane_kernels());
   const std::size_t words = frame.words();
   const auto shift = [&](int columns, int rows) {
     return sign * (static_cast<std::ptrdiff_t>(columns) +
@@ -104,7 +104,7 @@ BitPlane::BitPlane(const PlaneFrame& frame) : guard_(frame.guard), words_(frame.
 
 BitPlane plane_of(const Region& region, const PlaneFrame& frame) {
   BitPlane plane(frame);
-  const PlaneKernel& kernel = plane_kernel(kernel_in_use());
+  const PlaneKernel& kernel = version_in_use(plane_kernels());
   const auto runs = region.runs();
   auto run = runs.begin();
   for_bands(frame, [&](std::size_t first, std::size_t rows) {
@@ -124,7 +124,7 @@ BitPlane plane_of(const Region& region, const PlaneFrame& frame) {
 }
 
 Region region_of(const BitPlane& plane, const PlaneFrame& frame, PixelShift shift, std::size_t expected) {
-  const PlaneKernel& kernel = plane_kernel(kernel_in_use());
+  const PlaneKernel& kernel = version_in_use(plane_kernels());
   const std::size_t row_bits = frame.stride * kBits;
   RecycledBuffer<std::uint32_t> at(std::min(most_rows_of_band(frame), frame.rows) * row_bits + 16);
   RunVector runs;

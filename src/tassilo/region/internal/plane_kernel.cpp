@@ -1,5 +1,7 @@
 #include "tassilo/region/internal/plane_kernel.h"
 
+#include <array>
+
 #include "tassilo/region/internal/plane_loops.h"
 
 namespace tassilo {
@@ -17,20 +19,16 @@ void runs(PixelRun* to, const std::uint32_t* at, std::size_t count, const RowsOf
 
 }  // namespace
 
-constinit const PlaneKernel plain_plane_kernel{join_or,  join_and, triple_or, triple_and, nine_or,
+constinit const PlaneKernel plain_plane_kernel{Kernel::plain, join_or,  join_and, triple_or, triple_and, nine_or,
                                                nine_and, move,     changes,   fill,       runs};
 
-const PlaneKernel& plane_kernel(Kernel kernel) {
-  switch (kernel) {
+std::span<const PlaneKernel> plane_kernels() {
 #if defined(__x86_64__)
-    case Kernel::avx512:
-      return avx512_plane_kernel;
-    case Kernel::avx2:
-      return avx2_plane_kernel;
+  static const std::array kernels{plain_plane_kernel, avx2_plane_kernel, avx512_plane_kernel};
+#else
+  static const std::array kernels{plain_plane_kernel};
 #endif
-    default:  // on aarch64 the plain one is made of NEON already
-      return plain_plane_kernel;
-  }
+  return kernels;
 }
 
 }  // namespace tassilo

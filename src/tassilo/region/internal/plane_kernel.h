@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "tassilo/base/kernel.h"
 #include "tassilo/region/region.h"
@@ -19,6 +20,7 @@ struct RowsOfBits {
 /// A plane is one string of bits; `shift` moves it towards higher places, or, where negative, lower ones. A loop reads
 /// as far beyond both ends of `b` as the shift reaches, and one word more; `to` must not overlap `a` or `b`.
 struct PlaneKernel {
+  Kernel kernel;
   /// to = a | (b shifted), `words` words.
   void (*join_or)(std::uint64_t* to, const std::uint64_t* a, const std::uint64_t* b, std::size_t words,
                   std::ptrdiff_t shift);
@@ -46,8 +48,9 @@ struct PlaneKernel {
   void (*runs)(PixelRun* to, const std::uint32_t* at, std::size_t count, const RowsOfBits& rows);
 };
 
-/// The loops for a kernel.
-const PlaneKernel& plane_kernel(Kernel kernel);
+/// Those of this build, of which the machine may not run all: the plain one first, the fastest last. On aarch64 the
+/// compiler makes NEON of the plain one.
+std::span<const PlaneKernel> plane_kernels();
 
 extern const PlaneKernel plain_plane_kernel;
 #if defined(__x86_64__)
