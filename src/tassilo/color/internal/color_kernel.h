@@ -8,9 +8,8 @@
 #include "tassilo/image/frame.h"
 
 // To add a kernel: 1. its name in base/kernel.h and what it needs in kernel.cpp; 2. a source here with its
-// functions (or those of a simpler one); 3. its place in `color_kernels`. The tests run every supported kernel against the
-// definition. Others: region/internal/plane_kernel.h
-// and thinning.h, contour/internal/gradient.h.
+// functions (or those of a simpler one); 3. its place in `color_kernels`. The tests run every supported kernel against
+// the definition. Others: region/internal/plane_kernel.h and thinning.h, contour/internal/gradient.h.
 
 namespace tassilo {
 

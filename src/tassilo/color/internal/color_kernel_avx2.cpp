@@ -135,7 +135,8 @@ TASSILO_AVX2 int labels_of(const KernelTable& table, const std::uint8_t* claims,
 
 }  // namespace
 
-constinit const ColorKernel avx2_color_kernel{Kernel::avx2, claims_of, labels_of, erode_rows<Bytes>, dilate_rows<Bytes>};
+constinit const ColorKernel avx2_color_kernel{Kernel::avx2, claims_of, labels_of, erode_rows<Bytes>,
+                                              dilate_rows<Bytes>};
 
 }  // namespace tassilo
 

@@ -117,7 +117,8 @@ int labels_of(const KernelTable& table, const std::uint8_t* claims, const YuvRow
 
 }  // namespace
 
-constinit const ColorKernel neon_color_kernel{Kernel::neon, claims_of, labels_of, erode_rows<Bytes>, dilate_rows<Bytes>};
+constinit const ColorKernel neon_color_kernel{Kernel::neon, claims_of, labels_of, erode_rows<Bytes>,
+                                              dilate_rows<Bytes>};
 
 }  // namespace tassilo
 

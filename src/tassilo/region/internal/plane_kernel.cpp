@@ -19,8 +19,8 @@ void runs(PixelRun* to, const std::uint32_t* at, std::size_t count, const RowsOf
 
 }  // namespace
 
-constinit const PlaneKernel plain_plane_kernel{Kernel::plain, join_or,  join_and, triple_or, triple_and, nine_or,
-                                               nine_and, move,     changes,   fill,       runs};
+constinit const PlaneKernel plain_plane_kernel{Kernel::plain, join_or, join_and, triple_or, triple_and, nine_or,
+                                               nine_and,      move,    changes,  fill,      runs};
 
 std::span<const PlaneKernel> plane_kernels() {
 #if defined(__x86_64__)

@@ -20,8 +20,8 @@ TASSILO_AVX2 void runs(PixelRun* to, const std::uint32_t* at, std::size_t count,
 
 }  // namespace
 
-constinit const PlaneKernel avx2_plane_kernel{Kernel::avx2, join_or,  join_and, triple_or, triple_and, nine_or,
-                                              nine_and, move,     changes,   fill,       runs};
+constinit const PlaneKernel avx2_plane_kernel{Kernel::avx2, join_or, join_and, triple_or, triple_and, nine_or,
+                                              nine_and,     move,    changes,  fill,      runs};
 
 }  // namespace tassilo
 

@@ -189,8 +189,8 @@ TASSILO_AVX512 void runs(PixelRun* to, const std::uint32_t* at, std::size_t coun
 
 }  // namespace
 
-constinit const PlaneKernel avx512_plane_kernel{Kernel::avx512, join_or,  join_and, triple_or, triple_and, nine_or,
-                                                nine_and, move,     changes,   fill,       runs};
+constinit const PlaneKernel avx512_plane_kernel{Kernel::avx512, join_or, join_and, triple_or, triple_and, nine_or,
+                                                nine_and,       move,    changes,  fill,      runs};
 
 }  // namespace tassilo
 
