@@ -85,6 +85,7 @@ py::dict see(PythonVision& self, const Frame& frame) {
   {
     py::gil_scoped_release unlocked;
     const std::lock_guard only(self.mutex);
+    self.workspace.belief.reset();  // each frame by itself, whichever thread brings it
     line = to_json_line(self.vision(frame, self.workspace));
   }
   return py::module_::import("json").attr("loads")(line);
@@ -135,6 +136,7 @@ From parts: the color table and, for everything in metres, camera and field; eac
                   "colors"_a = py::none())
       .def("__call__", &see,
            "Sees one frame: a dict with the keys of a line of `tassilo run --output` (schema/scene.schema.json). "
+           "Each frame is seen by itself: the pose is what it alone shows. "
            "Raises tassilo.Error for frames of another size or color range than camera and table are for.",
            "frame"_a)
       .def("draw", &draw,

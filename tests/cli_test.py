@@ -60,6 +60,10 @@ class Usage(CliTest):
         self.refuses(*self.run_clip("--fps", "-1"), says="--fps")
         self.refuses(*self.run_clip("--format", "yuv999"), says=("yuv999", "nv12"))
         self.refuses(*self.run_clip("--range", "studio"), says=("studio", "limited"))
+        self.refuses(*self.run_clip("--every", "0"), says="--every")
+        for pose in ("1,2", "1,2,3,4,5,6", "1,2,north", "1,,3", "1,2,3,0", "1,2,nan", "1,2,3,"):
+            with self.subTest(pose):
+                self.refuses(*self.run_clip(f"--start-pose={pose}"), says=("--start-pose", pose, "must be X,Y,THETA"))
 
     def test_sizes_of_raw_frames(self):
         (self.folder / "some.yuv").write_bytes(b"\x80" * 1000)

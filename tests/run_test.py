@@ -64,15 +64,17 @@ class Run(ProgramTest):
         self.assertEqual(set(figures["sequences"]), set(RECORDINGS))
         overall = figures["overall"]
         ball, goals, robots, free = overall["ball"], overall["goals"]["both"], overall["robots"], overall["free_space"]
+        pose = overall["pose"]
         mean = figures["colors"]["overall"]
         self.assertEqual((overall["frames"], overall["frames_missing"], mean["missing"]), (80, 0, 0))
         at_least = {"ball recall": (ball["recall_best"], .95), "ball precision": (ball["precision_best"], .98),
                     "ball within near..far": (ball["bracketed"], .95),
                     "goals recall": (goals["recall"], .95), "goals precision": (goals["precision"], .98),
                     "robots recall": (robots["recall"], .90), "robots precision": (robots["precision"], .92), "robots team": (robots["team_right"], .95),
-                    "free space coverage": (free["coverage"], .95),
+                    "free space coverage": (free["coverage"], .95), "pose known": (pose["share"], .97), "pose good": (pose["good_after_fix"], .9),
                     "colors recall": (mean["mean_recall"], .93), "colors precision": (mean["mean_precision"], .93)}
         at_most = {"ball error": (ball["error_relative"]["median"], .03), "ball bracket width": (ball["bracket_width_relative"], .12),
+                   "pose wrong": (pose["wrong"], 0), "pose error": (pose["position_m"]["median"], .03), "heading": (pose["heading_deg"]["median"], .8),
                    "goals bearing": (goals["bearing_deg"]["median"], 1), "robots nearest point": (robots["to_nearest_m"]["median"], .12),
                    "free space dangerous": (free["dangerous"], .02), "free space timid": (free["timid"], .08)}
         faults = [f"{name} is {value}, must be >= {bound}" for name, (value, bound) in at_least.items() if not value >= bound]
@@ -83,6 +85,19 @@ class Run(ProgramTest):
         self.assertGreater(robots["robots"], 100)
         self.assertGreater(free["blocked"], 1000)
 
+    def test_every_third_frame(self):
+        run = ("run", *robot("d01_approach"), "--source", "clip.mkv", "--colors", "div.yaml", "--output", "third.jsonl", "--quiet")
+        self.succeeds(*run, "--every", 3)
+        self.assertEqual([scene["frame"] for scene in self.scenes("third.jsonl")], list(range(0, CLIP_FRAMES, 3)))
+
+    def test_a_start_pose_decides_which_half(self):
+        start = self.scenes("d01_approach.jsonl")[0]["pose"]
+        run = ("run", *robot("d01_approach"), "--source", "clip.mkv", "--colors", "div.yaml", "--output", "start.jsonl", "--quiet")
+        self.succeeds(*run, f"--start-pose={start['x'] + .1},{start['y'] - .1},{start['theta'] + .05}")
+        pose = self.scenes("start.jsonl")[0]["pose"]
+        self.assertLess(abs(pose["x"] - start["x"]) + abs(pose["y"] - start["y"]), .05)
+        self.assertFalse(pose["mirror"])
+
     def test_same_frames_give_the_same_scenes(self):
         self.succeeds("run", *recording_of("d01_approach"), "--colors", "div.yaml", "--output", "again.jsonl", "--quiet", "--threads", 2)
         first, again = self.scenes("d01_approach.jsonl"), self.scenes("again.jsonl")
@@ -90,7 +105,7 @@ class Run(ProgramTest):
 
     def test_raw_frames_on_standard_input_give_the_same_scenes(self):
         raw = raw_bytes(DATA / "d01_approach/video.mkv", "yuv422p", CLIP_FRAMES)
-        self.succeeds("run", *robot("d01_approach"), "--colors", "div.yaml", "--source", "-", "--format", "yuv422p", "--size", "384x172", "--range",
+        self.succeeds("run", *robot("d01_approach"), "--odometry", DATA / "d01_approach/odometry.jsonl", "--colors", "div.yaml", "--source", "-", "--format", "yuv422p", "--size", "384x172", "--range",
                       "limited", "--fps", 20, "--output", "raw.jsonl", "--quiet", input=raw)
         scenes = self.scenes("raw.jsonl")
         self.assertEqual([s.pop("t") for s in scenes], [k / 20 for k in range(CLIP_FRAMES)])

@@ -524,7 +524,7 @@ class Vision:
     def from_robot(path: Union[str, os.PathLike[str]], colors: Optional[Union[str, os.PathLike[str]]] = None) -> Vision:
         """From a robot.yaml and the files it names; `colors` takes the place of its color table."""
     def __call__(self, frame: Frame) -> Dict[str, Any]:
-        """Sees one frame: a dict with the keys of a line of `tassilo run --output` (schema/scene.schema.json). Raises tassilo.Error for frames of another size or color range than camera and table are for."""
+        """Sees one frame: a dict with the keys of a line of `tassilo run --output` (schema/scene.schema.json). Each frame is seen by itself: the pose is what it alone shows. Raises tassilo.Error for frames of another size or color range than camera and table are for."""
     def draw(self, frame: Frame, scene: Dict[str, Any], scale: int = 0, bird_view: bool = True) -> NDArray[numpy.uint8]:
         """The frame with what was seen in it, beside it the view from above: (height, width, 3) of R, G, B."""
 

@@ -76,6 +76,7 @@ int main(int argc, char** argv) {
   } catch (const Error& error) {
     return failure(error.what());
   } catch (const std::system_error& error) {  // what the system refused, and no reader foresaw
+    if (std::ferror(stdout) != 0) return failure("standard output: cannot be written: " + error.code().message());
     return failure(error.what());
   } catch (const std::exception& error) {
     return failure(std::string("unexpected: ") + error.what());

@@ -64,6 +64,9 @@ RobotSetup read_robot_setup(const std::string& robot_file, const std::string& co
   setup.vision.field = robot.field ? named_field(robot_file, *robot.field) : read_field("msl98");
   if (robot.field && is_field_path(*robot.field)) setup.read.push_back({"field file", *robot.field});
   setup.vision.options = vision_options(robot.vision);
+  if (robot.start_pose)
+    setup.vision.start_pose = pose_gaussian(robot.start_pose->x, robot.start_pose->y, robot.start_pose->theta,
+                                            robot.start_pose->sigma_xy, robot.start_pose->sigma_theta);
   return setup;
 }
 

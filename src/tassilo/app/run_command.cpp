@@ -4,7 +4,9 @@
 
 #include <array>
 #include <atomic>
+#include <charconv>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -29,10 +31,12 @@ namespace tassilo {
 namespace {
 
 struct RunArguments {
-  std::string robot, source, odometry, output, overlay, label_maps, colors;
+  std::string robot, source, odometry, output, overlay, label_maps, colors, start_pose;
   std::string format, size, range;
-  std::optional<RawFormat> raw;  ///< What `format`, `size`, `range` and `fps` say.
+  std::optional<RawFormat> raw;       ///< What `format`, `size`, `range` and `fps` say.
+  std::optional<PoseGaussian> start;  ///< What `start_pose` says.
   double fps = 0;
+  int every = 1;
   int threads = 1;
   bool quiet = false;
 };
@@ -82,6 +86,30 @@ std::optional<RawFormat> raw_format(const RunArguments& arguments) {
     throw CLI::ValidationError("--size", error.what());
   }
   return raw;
+}
+
+/// Throws CLI::ValidationError: what it refuses is wrong usage.
+std::optional<PoseGaussian> start_pose_from(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  std::array<double, 5> numbers{0, 0, 0, 0.1, 0.1};
+  std::size_t count = 0;
+  for (std::size_t begin = 0; begin <= text.size() && count <= numbers.size(); ++count) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    double value = 0;
+    const auto [rest, error] = std::from_chars(text.data() + begin, text.data() + end, value);
+    if (count == numbers.size() || error != std::errc{} || rest != text.data() + end || !std::isfinite(value)) {
+      count = 0;
+      break;
+    }
+    numbers[count] = value;
+    begin = end + 1;
+  }
+  const auto [x, y, theta, sigma_xy, sigma_theta] = numbers;
+  if (count < 3 || !(sigma_xy > 0) || !(sigma_theta > 0))
+    throw CLI::ValidationError(
+        "--start-pose",
+        "is " + text + ", must be X,Y,THETA or X,Y,THETA,SIGMA_XY,SIGMA_THETA in m and rad, sigmas > 0");
+  return pose_gaussian(x, y, theta, sigma_xy, sigma_theta);
 }
 
 /// Throws Error when a file that is read would be overwritten.
@@ -211,7 +239,8 @@ std::optional<Odometry> load_odometry(const std::string& file) {
 
 int run_command(const RunArguments& arguments) {
   using Clock = std::chrono::steady_clock;
-  const RobotSetup setup = read_robot_setup(arguments.robot, arguments.colors);
+  RobotSetup setup = read_robot_setup(arguments.robot, arguments.colors);
+  if (arguments.start) setup.vision.start_pose = arguments.start;
   check_paths(arguments, setup.read);
   const Vision vision(setup.vision);
   const std::optional<Odometry> odometry = load_odometry(arguments.odometry);
@@ -247,16 +276,17 @@ int run_command(const RunArguments& arguments) {
   RunSummary summary;
   Progress progress(!arguments.quiet, source.info().frame_count);
   std::optional<Error> damage;
-  std::int64_t done = 0;
+  std::int64_t read = 0, done = 0;
   const auto begin = Clock::now();
   try {
     while (!interrupted) {
       const auto before = Clock::now();
       const std::optional<Frame> frame = source.next();
       if (!frame) break;
+      if (read++ % arguments.every != 0) continue;
       const double decode_ms = ms_between(before, Clock::now());
       vision.check_frames(name_of(*frame, name), frame->view.width(), frame->view.height(), frame->range);
-      Scene scene = vision(*frame, workspace);
+      Scene scene = vision(*frame, workspace, odometry ? &*odometry : nullptr);
       scene.timing.insert(scene.timing.begin(), {"decode", decode_ms});
       if (odometry) {
         const bool known = odometry->at(frame->t).has_value();
@@ -292,6 +322,8 @@ Command add_run(CLI::App& program) {
                    "video or image file, folder of images, URL, or - for standard input")
       ->required();
   command->add_option("--odometry", arguments->odometry, "odometry.jsonl on the clock of the frames");
+  command->add_option("--start-pose", arguments->start_pose,
+                      "X,Y,THETA[,SIGMA_XY,SIGMA_THETA] on the field, instead of the robot file's [m, rad]");
   command->add_option("-o,--output", arguments->output, "scenes as JSON Lines; - for standard output");
   command->add_option("--overlay", arguments->overlay, "annotated pictures: a .mkv or .mp4 video, or a folder of PNGs");
   command->add_option("--label-maps", arguments->label_maps, "folder for color classes 0..8 as NNNN.png");
@@ -306,8 +338,14 @@ Command add_run(CLI::App& program) {
   command->add_option("--threads", arguments->threads, "for decoding and encoding; seeing itself takes one core")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
+  command->add_option("--every", arguments->every, "look at every N-th frame only, as if the others had been lost")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
   command->add_flag("-q,--quiet", arguments->quiet, "print nothing but errors");
-  command->callback([arguments] { arguments->raw = raw_format(*arguments); });
+  command->callback([arguments] {
+    arguments->raw = raw_format(*arguments);
+    arguments->start = start_pose_from(arguments->start_pose);
+  });
   return [arguments] { return run_command(*arguments); };
 }
 

@@ -12,6 +12,7 @@
 
 #include "tassilo/base/error.h"
 #include "tassilo/base/sort_stably.h"
+#include "tassilo/detect/edge.h"
 #include "tassilo/geometry/angle.h"
 
 namespace tassilo {
@@ -211,13 +212,86 @@ std::optional<FloorPoint> on_plane_and_floor(const View& view, const LinePoint& 
   return FloorPoint{eye.x + along * ray.x(), eye.y + along * ray.y()};
 }
 
+/// Uncertainty of one place on an edge, and what all edges of a line share: blur, noise and where the color changes.
+constexpr double kEdgeSigma = 0.3, kCommonSigma = 0.3;  // [px]
+/// A place of the segmentation is good to half a pixel.
+constexpr double kLabelSigma = 0.5;  // [px]
+
+/// How far a place on the floor moves across a line when the mount turns by its uncertainty.
+double mount_sigma_across(const View& view, FloorPoint at, FloorPoint across) {
+  const MountSigma& sigma = view.optics->mount_sigma;
+  const RobotPoint eye = view.optics->camera.center();
+  const FloorPoint out = at - foot_of(view.optics->camera);
+  const double range = std::max(norm(out), 1e-6);
+  const double radial = std::abs(dot(out, across)) / range, sideways = std::abs(cross(out, across)) / range;
+  const double by_pitch = (range * range + eye.z * eye.z) / eye.z * sigma.pitch, by_height = range / eye.z * sigma.z;
+  return std::hypot(radial * by_pitch, radial * by_height, sideways * range * sigma.yaw);
+}
+
+/// The mark at a place of the floor where a line was found, moved to where its edges are.
+std::optional<LineMark> mark_at(const View& view, FloorPoint at, FloorPoint across, LineKind kind, int line) {
+  const MountedCamera& camera = view.optics->camera;
+  if (dot(across, at - foot_of(camera)) < 0) across = -1.0 * across;  // away from us
+  constexpr double step = 0.02;                                       // [m]
+  const FloorPoint beyond = at + step * across;
+  const auto here = camera.project({at.x, at.y, 0}), there = camera.project({beyond.x, beyond.y, 0});
+  if (!here || !there) return std::nullopt;
+  const double px_per_step = distance(*here, *there);
+  if (!(px_per_step > 0)) return std::nullopt;
+  const PixelPoint outward = (1 / px_per_step) * (*there - *here);
+  const double meters_per_px = step / px_per_step;
+  const auto on_floor_at = [&](PixelPoint pixel) -> std::optional<FloorPoint> {
+    const auto ray = view.optics->ray(pixel);
+    return ray ? camera.floor_along(*ray, 0, longest_distance(view.field)) : std::nullopt;
+  };
+  LineMark mark{at, across, kEdgeSigma * meters_per_px, 0, kind, line};
+  if (kind == LineKind::boundary) {
+    const auto edge = find_edge(view.frame, {.at = *here, .outward = outward});
+    const auto floor = edge ? on_floor_at(*edge) : std::nullopt;
+    if (!floor) return std::nullopt;
+    mark.at = *floor;
+  } else {
+    // Two edges where they are apart, else the middle of the white pixels.
+    const double half_px = view.field.line_width / 2 / meters_per_px;
+    constexpr double least_half_px = 1.5;
+    if (half_px >= least_half_px) {
+      const double reach = std::min(3.0, half_px);
+      const auto far = find_edge(view.frame, {.at = *here + half_px * outward, .outward = outward, .reach_px = reach});
+      const auto near =
+          find_edge(view.frame, {.at = *here - half_px * outward, .outward = -1.0 * outward, .reach_px = reach});
+      const auto far_floor = far ? on_floor_at(*far) : std::nullopt,
+                 near_floor = near ? on_floor_at(*near) : std::nullopt;
+      if (!far_floor || !near_floor) return std::nullopt;
+      mark.at = 0.5 * (*far_floor + *near_floor);
+    } else {
+      mark.sigma = kLabelSigma * meters_per_px;
+    }
+  }
+  mark.common_sigma = std::hypot(kCommonSigma * meters_per_px, mount_sigma_across(view, at, across));
+  return mark;
+}
+
+/// Every n-th of a line's places, so that there are no more than enough.
+constexpr std::size_t kMostMarks = 24;
+template <class Each>
+void for_some(std::size_t count, Each each) {
+  const std::size_t some = std::min(count, kMostMarks);
+  for (std::size_t k = 0; k < some; ++k) each((2 * k + 1) * count / (2 * some));
+}
+
 void find_straight(const View& view, RecycledVector<LinePoint> points, LineKind kind, const LineOptions& options,
-                   RecycledVector<LineSeen>& out) {
+                   Lines& out) {
   constexpr int most_trials = 60;
   const double tolerance =
       options.tolerance_px / std::sqrt(view.optics->camera.model().fx * view.optics->camera.model().fy);
   Dice dice(1);
-  RecycledVector<std::pair<double, LineSeen>> found;
+  /// A line, its length and its marks.
+  struct Found {
+    double length = 0;  ///< [m]
+    LineSeen line;
+    RecycledVector<LineMark> marks;
+  };
+  RecycledVector<Found> found;
   while (points.size() >= static_cast<std::size_t>(options.min_points) &&
          found.size() < static_cast<std::size_t>(options.max_lines)) {
     const RayArrays rays(points);
@@ -256,7 +330,15 @@ void find_straight(const View& view, RecycledVector<LinePoint> points, LineKind 
       line.image_p = first.pixel;
       line.image_q = last.pixel;
       line.floor = {*p, *q};
-      found.emplace_back(distance(*p, *q), std::move(line));
+      const double length = distance(*p, *q);
+      const FloorPoint along = (1 / length) * (*q - *p), across{-along.y, along.x};
+      RecycledVector<LineMark> marks;
+      for_some(piece.points.size(), [&](std::size_t k) {
+        const auto floor = on_plane_and_floor(view, points[piece.points[k]], normal);
+        const auto mark = floor ? mark_at(view, *floor, across, kind, 0) : std::nullopt;
+        if (mark) marks.push_back(*mark);
+      });
+      found.push_back({length, std::move(line), std::move(marks)});
     }
     // What lies on the line, or on its rim, is explained.
     const auto [low_x, high_x] = std::ranges::minmax(first.floor.x, last.floor.x);
@@ -269,8 +351,14 @@ void find_straight(const View& view, RecycledVector<LinePoint> points, LineKind 
     for (const std::size_t i : piece.points) used[i] = true;
     drop(points, used);
   }
-  sort_stably(found, std::greater<>{}, &std::pair<double, LineSeen>::first);
-  for (auto& [length, line] : found) out.push_back(std::move(line));
+  sort_stably(found, std::greater<>{}, &Found::length);
+  for (Found& one : found) {
+    for (LineMark& mark : one.marks) {
+      mark.line = static_cast<int>(out.lines.size());
+      out.marks.push_back(mark);
+    }
+    out.lines.push_back(std::move(one.line));
+  }
 }
 
 /// How far the floor point moves from one pixel to the next, right and down, around a place in the image. [m/px]
@@ -371,7 +459,8 @@ bool is_supported(const View& view, const CirclePoints& points, FloorPoint cente
 }
 
 /// The centre circle of known radius; takes its points away.
-std::optional<CircleSeen> find_circle(const View& view, RecycledVector<LinePoint>& all, const LineOptions& options) {
+std::optional<CircleSeen> find_circle(const View& view, RecycledVector<LinePoint>& all, const LineOptions& options,
+                                      RecycledVector<LineMark>& marks) {
   const double radius = view.field.circle_radius;
   const auto least = static_cast<std::size_t>(2 * options.min_points);
   if (radius <= 0 || all.size() < least) return std::nullopt;
@@ -414,8 +503,18 @@ std::optional<CircleSeen> find_circle(const View& view, RecycledVector<LinePoint
   }
   if (!is_supported(view, points, center, options)) return std::nullopt;
   RecycledVector<bool> on_circle(all.size(), false);
-  for (std::size_t i = 0; i < points.size(); ++i)
+  RecycledVector<FloorPoint> directions;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (points.off_circle(i, center, options.tolerance_px)) {
+      const FloorPoint out = points.floor(i) - center;
+      directions.push_back((1 / norm(out)) * out);
+    }
     if (points.off_circle(i, center, 1.5 * options.tolerance_px)) on_circle[points.source(i)] = true;
+  }
+  for_some(directions.size(), [&](std::size_t k) {
+    const auto mark = mark_at(view, center + radius * directions[k], directions[k], LineKind::line, LineMark::kCircle);
+    if (mark) marks.push_back(*mark);
+  });
   drop(all, on_circle);
   return CircleSeen{center, radius};
 }
@@ -438,10 +537,10 @@ void LineOptions::check() const {
 Lines find_lines(const View& view, const LineOptions& options) {
   Lines lines;
   if (view.optics == nullptr) return lines;
-  find_straight(view, on_floor(view, wall_feet(view)), LineKind::boundary, options, lines.lines);
+  find_straight(view, on_floor(view, wall_feet(view)), LineKind::boundary, options, lines);
   RecycledVector<LinePoint> points = on_floor(view, line_middles(view));
-  if (const auto circle = find_circle(view, points, options)) lines.circles.push_back(*circle);
-  find_straight(view, std::move(points), LineKind::line, options, lines.lines);
+  if (const auto circle = find_circle(view, points, options, lines.marks)) lines.circles.push_back(*circle);
+  find_straight(view, std::move(points), LineKind::line, options, lines);
   return lines;
 }
 

@@ -2,6 +2,7 @@
 
 #include "tassilo/base/recycled.h"
 #include "tassilo/detect/view.h"
+#include "tassilo/scene/line_mark.h"
 #include "tassilo/scene/scene.h"
 
 namespace tassilo {
@@ -19,6 +20,7 @@ struct LineOptions {
 struct Lines {
   RecycledVector<LineSeen> lines;      ///< Longest on the floor first within each kind, boundary before line.
   RecycledVector<CircleSeen> circles;  ///< At most one.
+  RecycledVector<LineMark> marks;  ///< Places of both to sub-pixel accuracy, a few tens each; `line` counts `lines`.
 };
 
 /// Field lines, the field's boundary where carpet meets a wall, and the centre circle; nothing without calibration.

@@ -7,6 +7,7 @@
 
 #include "tassilo/base/contract.h"
 #include "tassilo/base/error.h"
+#include "tassilo/geometry/angle.h"
 #include "tassilo/overlay/internal/bird_view.h"
 #include "tassilo/overlay/internal/canvas.h"
 #include "tassilo/overlay/internal/floor_view.h"
@@ -182,6 +183,15 @@ void draw_status(Canvas& canvas, const Layout& layout, const Scene& scene) {
     word("frame " + std::to_string(scene.frame), strong);
     word(fixed(scene.t, 3) + " s", quiet);
     if (!scene.image.empty()) word(scene.image, quiet);
+    if (scene.pose) {
+      const PoseSeen& pose = *scene.pose;
+      const double sigma = std::sqrt(pose.covariance[0] + pose.covariance[4]);
+      word("x " + fixed(pose.x, 2) + "  y " + fixed(pose.y, 2) + " m  " + fixed(degrees(pose.theta), 0) + "\u00b0",
+           strong);
+      word("\u00b1 " + fixed(100 * sigma, 1) + " cm  " + std::string(to_string(pose.kind)) +
+               (pose.mirror ? ", or the mirrored place" : ""),
+           quiet);
+    }
     if (scene.timing.empty()) return;
     canvas.text(fixed(scene.timing.back().ms, 2) + " ms", {layout.status.right() - margin, middle}, TextAnchor::right,
                 strong);

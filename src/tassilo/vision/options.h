@@ -12,6 +12,7 @@
 #include "tassilo/detect/robot.h"
 #include "tassilo/files/setting.h"
 #include "tassilo/freespace/free_space.h"
+#include "tassilo/localize/localize.h"
 #include "tassilo/surface/surface.h"
 
 namespace tassilo {
@@ -24,6 +25,7 @@ struct VisionOptions {
   RobotOptions robot;
   LineOptions line;
   FreeSpaceOptions free_space;
+  LocalizeOptions localize;
   /// How well the mount is known: what a careful calibration leaves, plus how much the robot shakes and nods while
   /// driving.
   double mount_angle_sigma = 0.0002;   ///< Of roll, pitch and yaw each. [rad]

@@ -40,6 +40,8 @@ Vision::Vision(const VisionSetup& setup) : classifier_(setup.colors), field_(set
   const MountedCamera camera(model, *setup.mount);
   optics_ = std::make_unique<const Optics>(camera, options_.mount_sigma());
   sectors_ = std::make_unique<const SectorMap>(camera, options_.free_space);
+  target_ = std::make_unique<const FieldTarget>(field_);
+  start_pose_ = setup.start_pose;
 }
 
 void Vision::check_frames(const std::string& name, int width, int height, ColorRange range) const {
@@ -56,7 +58,7 @@ void Vision::check_frames(const std::string& name, int width, int height, ColorR
                           "; calibrate for this resolution, or leave `camera:` out of the robot file");
 }
 
-Scene Vision::operator()(const Frame& frame, VisionWorkspace& workspace) const {
+Scene Vision::operator()(const Frame& frame, VisionWorkspace& workspace, const Odometry* odometry) const {
   check_frames(frame.image.empty() ? "frame " + std::to_string(frame.index) : frame.image, frame.view.width(),
                frame.view.height(), frame.range);
 
@@ -96,6 +98,20 @@ Scene Vision::operator()(const Frame& frame, VisionWorkspace& workspace) const {
     scene.circles = std::move(lines.circles);
     scene.free_space =
         timed(scene, "free_space", [&] { return find_free_space(*sectors_, workspace.surface, scene.balls); });
+    // A source that begins again is another drive.
+    if (!workspace.belief || frame.t < workspace.belief->t)
+      workspace.belief = start_pose_ ? belief_in(*start_pose_, frame.t) : PoseBelief{};
+    Localized localized = timed(scene, "localize", [&] {
+      const RobotMotion motion = robot_motion(odometry, workspace.belief->t, frame.t, options_.localize);
+      return localize(*target_, *workspace.belief, motion, {lines.marks, scene.goals, &*scene.free_space}, frame.t,
+                      options_.localize);
+    });
+    scene.pose = localized.pose;
+    scene.why.emplace_back("pose", std::move(localized.why));
+    for (std::size_t k = 0; k < localized.line_of.size() && k < scene.lines.size(); ++k)
+      if (localized.line_of[k] >= 0)
+        scene.lines[k].model = target_->curves.lines[static_cast<std::size_t>(localized.line_of[k])].name;
+    workspace.belief = std::move(localized.belief);
   }
   scene.timing.push_back({"total", ms_since(start)});
   return scene;

@@ -9,6 +9,7 @@
 #include "tassilo/color/segment.h"
 #include "tassilo/detect/view.h"
 #include "tassilo/image/frame.h"
+#include "tassilo/localize/localize.h"
 #include "tassilo/scene/scene.h"
 #include "tassilo/vision/options.h"
 
@@ -21,12 +22,14 @@ struct VisionSetup {
   std::optional<CameraModel> camera;  ///< Without camera or mount, all floor values stay empty.
   std::optional<CameraMount> mount;
   VisionOptions options;
+  std::optional<PoseGaussian> start_pose;
 };
 
 /// Memory that is used again from frame to frame, and what the last frame left in it, to be shown or stored.
 struct VisionWorkspace {
   Segmentation segmentation;
   Surface surface;
+  std::optional<PoseBelief> belief;  ///< After the last frame.
 };
 
 /// The one place where stages are put in order: from frame to scene.
@@ -37,9 +40,10 @@ class Vision {
   /// Throws Error when options, camera or table are out of range.
   explicit Vision(const VisionSetup& setup);
 
-  /// Sees one frame. `timing` has a row for each stage and "total"; pose stays empty.
+  /// Sees one frame. `timing` has a row for each stage and "total".
+  /// odometry   null where there is none
   /// Throws Error when the frame is not what check_frames asks for.
-  Scene operator()(const Frame& frame, VisionWorkspace& workspace) const;
+  Scene operator()(const Frame& frame, VisionWorkspace& workspace, const Odometry* odometry = nullptr) const;
 
   /// Throws Error naming `name` when frames of this size are not the camera's, or their range is not the table's.
   void check_frames(const std::string& name, int width, int height, ColorRange range) const;
@@ -52,6 +56,8 @@ class Vision {
   VisionOptions options_;
   std::unique_ptr<const Optics> optics_;
   std::unique_ptr<const SectorMap> sectors_;
+  std::unique_ptr<const FieldTarget> target_;
+  std::optional<PoseGaussian> start_pose_;
 };
 
 }  // namespace tassilo

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <optional>
+
+#include "tassilo/base/recycled_string.h"
+#include "tassilo/localize/pose_belief.h"
+#include "tassilo/localize/pose_fit.h"
+#include "tassilo/scene/scene.h"
+#include "tassilo/timeline/odometry.h"
+
+namespace tassilo {
+
+struct LocalizeOptions {
+  /// Odometry: how far off it may be. One standard deviation.
+  double odometry_distance_sigma = 0.1;  ///< Of the distance driven: slip and a wrong wheel radius. [1], >= 0
+  double odometry_turn_sigma = 0.1;      ///< Of the angle turned. [1], >= 0
+  double odometry_drift_sigma = 0.01;    ///< Whatever it says, by time. [m/sqrt(s), rad/sqrt(s)], > 0
+  /// Without odometry: how fast a robot may be.
+  double speed_sigma = 1;        ///< [m/s], > 0
+  double turn_rate_sigma = 1.5;  ///< [rad/s], > 0
+  double certain = 0.95;         ///< Share of belief at which one place is the pose. 0.5 .. 1
+  int max_hypotheses = 12;       ///< >= 2
+  void check() const;            ///< Throws Error naming the first field out of range.
+};
+
+/// How the robot moved between two times, in its frame at the first, and how sure that is.
+struct RobotMotion {
+  double x = 0, y = 0, theta = 0;  ///< [m, rad]
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+};
+/// By odometry where it knows both times, else standing still with the uncertainty of a robot that may drive.
+RobotMotion robot_motion(const Odometry* odometry, double from, double to, const LocalizeOptions& options);
+
+/// A pose after a motion.
+PoseGaussian moved(const PoseGaussian& pose, const RobotMotion& motion);
+
+/// What was decided in one frame.
+struct Localized {
+  PoseBelief belief;
+  std::optional<PoseSeen> pose;  ///< What may be told to others.
+  RecycledVector<int> line_of;   ///< By seen line: index into the target's curves.lines, -1: none.
+  RecycledString why;            ///< Short reason.
+};
+
+/// The belief at time t from the one before, the motion between and what is seen at t.
+///
+/// Each hypothesis is moved, fitted to what is seen and weighted by how well that fits. Where there is none, or the
+/// best one has not explained what is seen for some frames, all poses that do are added. Certain is what holds all but
+/// a twentieth of the belief; with the point-mirrored place as rival, the pose is marked `mirror`.
+///
+/// source   multi-hypothesis Kalman filter: P. Jensfelt, S. Kristensen, "Active global localization for a mobile robot
+///          using multiple hypothesis tracking", IEEE T-RA 17(5), 2001; own
+/// cost     some 20 us a hypothesis; some ms where all poses are searched
+Localized localize(const FieldTarget& target, const PoseBelief& before, const RobotMotion& motion,
+                   const PoseObservation& seen, double t, const LocalizeOptions& options);
+
+/// A belief in one pose, as a start pose gives it.
+PoseBelief belief_in(const PoseGaussian& pose, double t);
+
+}  // namespace tassilo

@@ -1,0 +1,448 @@
+#include "tassilo/localize/pose_fit.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "tassilo/geometry/angle.h"
+
+namespace tassilo {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// Marks of one seen line.
+struct SeenLine {
+  std::span<const LineMark> marks;
+  bool is_circle = false;
+  bool is_wall = false;
+  double angle = 0;  ///< Of the line, modulo pi. [rad]
+  FloorPoint middle;
+  double offset = 0;  ///< Of the line from the robot's origin along its normal at angle + 90 degrees. [m]
+  FloorPoint first, last;
+};
+
+RecycledVector<SeenLine> seen_lines(std::span<const LineMark> marks) {
+  RecycledVector<SeenLine> lines;
+  for (std::size_t begin = 0; begin < marks.size();) {
+    std::size_t end = begin;
+    while (end < marks.size() && marks[end].line == marks[begin].line) ++end;
+    SeenLine line;
+    line.marks = marks.subspan(begin, end - begin);
+    line.is_circle = marks[begin].line == LineMark::kCircle;
+    line.is_wall = marks[begin].kind == LineKind::boundary;
+    line.first = marks[begin].at;
+    line.last = marks[end - 1].at;
+    // Total least squares, each mark by its certainty.
+    double sum = 0, x = 0, y = 0;
+    for (const LineMark& mark : line.marks) {
+      const double weight = 1 / (mark.sigma * mark.sigma);
+      sum += weight;
+      x += weight * mark.at.x;
+      y += weight * mark.at.y;
+    }
+    line.middle = {x / sum, y / sum};
+    double xx = 0, xy = 0, yy = 0;
+    for (const LineMark& mark : line.marks) {
+      const double weight = 1 / (mark.sigma * mark.sigma);
+      const FloorPoint d = mark.at - line.middle;
+      xx += weight * d.x * d.x;
+      xy += weight * d.x * d.y;
+      yy += weight * d.y * d.y;
+    }
+    line.angle = 0.5 * std::atan2(2 * xy, xx - yy);
+    line.offset = -std::sin(line.angle) * line.middle.x + std::cos(line.angle) * line.middle.y;
+    constexpr std::size_t least = 4;
+    if (line.marks.size() >= least) lines.push_back(line);
+    begin = end;
+  }
+  return lines;
+}
+
+/// A difference of undirected angles in [-pi/2, pi/2). [rad]
+double wrap_half_turn(double angle) { return 0.5 * wrap_angle(2 * angle); }
+
+double angle_of(const FieldLine& line) { return std::atan2(line.q.y - line.p.y, line.q.x - line.p.x); }
+
+/// Distance of a point from a line's stretch. [m]
+double distance_from(const FieldLine& line, FieldPoint p) {
+  const FieldPoint along = line.q - line.p, out = p - line.p;
+  const double share = std::clamp(dot(out, along) / dot(along, along), 0., 1.);
+  return distance(p, line.p + share * along);
+}
+
+constexpr double kCap = 9;           // squared residuals beyond three sigmas say no more
+constexpr double kUnexplained = 8;   // log likelihood that a seen line is none of the field's costs
+constexpr double kMostEvidence = 6;  // independent places of a line: they share blur and mount
+constexpr double kGoalCap = 25;
+constexpr double kPostSigma = 0.015;  // [rad] a pixel or two, and the width of a post's rim
+constexpr double kGoalSigma = 0.04;   // [rad] of a visible part that may lie anywhere in the mouth
+
+class Fitter {
+ public:
+  Fitter(const FieldTarget& target, const PoseObservation& seen)
+      : target_(target), seen_(seen), lines_(seen_lines(seen.marks)), of_(lines_.size(), -1) {}
+
+  const RecycledVector<SeenLine>& lines() const { return lines_; }
+
+  /// How well a pose explains what is seen; `slack` is how far off the pose may be at the marks. [m]
+  double associate(const PoseGaussian& pose, double slack, double turn_slack) {
+    double total = 0;
+    const FieldFromRobot field_from_robot = pose.field_from_robot();
+    for (std::size_t k = 0; k < lines_.size(); ++k) {
+      const SeenLine& line = lines_[k];
+      of_[k] = -1;
+      double best = kCap;
+      if (line.is_circle) {
+        for (std::size_t a = 0; a < target_.curves.arcs.size(); ++a) {
+          const double cost = mean_cost(line, slack, [&](FloorPoint p) {
+            return std::abs(distance(field_from_robot * p, target_.curves.arcs[a].center) -
+                            target_.curves.arcs[a].radius);
+          });
+          if (cost < best) best = cost, of_[k] = static_cast<int>(a);
+        }
+      } else {
+        const double angle = line.angle + pose.theta;
+        for (std::size_t m = 0; m < target_.curves.lines.size(); ++m) {
+          const FieldLine& model = target_.curves.lines[m];
+          if (model.is_wall != line.is_wall) continue;
+          constexpr double most_turn = 0.1;  // [rad] a line seen at all has a direction
+          if (std::abs(wrap_half_turn(angle - angle_of(model))) > most_turn + turn_slack) continue;
+          // The ends of a stretch need not be seen to the centimetre.
+          const double cost =
+              mean_cost(line, slack, [&](FloorPoint p) { return distance_from(model, field_from_robot * p); });
+          if (cost < best) best = cost, of_[k] = static_cast<int>(m);
+        }
+      }
+      const double evidence = std::min(kMostEvidence, static_cast<double>(line.marks.size()));
+      total -= of_[k] < 0 ? kUnexplained : std::min(kUnexplained, 0.5 * evidence * best);
+    }
+    return total + goals(pose) + free_floor(field_from_robot);
+  }
+
+  /// One step of Gauss-Newton from `pose`; the information of all measurements but the prior.
+  void add_measurements(const PoseGaussian& pose, Eigen::Matrix3d& information, Eigen::Vector3d& gradient) const {
+    const double c = std::cos(pose.theta), s = std::sin(pose.theta);
+    const auto add = [&](const Eigen::Vector3d& by_pose, double residual, double sigma, double scale) {
+      const double normed = residual / scale, robust = 1 / (1 + normed * normed / 4);  // Cauchy, two sigmas
+      const double weight = robust / (sigma * sigma);
+      information += weight * by_pose * by_pose.transpose();
+      gradient += weight * residual * by_pose;
+    };
+    for (std::size_t k = 0; k < lines_.size(); ++k) {
+      if (of_[k] < 0) continue;
+      const auto n = static_cast<double>(lines_[k].marks.size());
+      for (const LineMark& mark : lines_[k].marks) {
+        const double turned_x = c * mark.at.x - s * mark.at.y, turned_y = s * mark.at.x + c * mark.at.y;
+        const double x = turned_x + pose.x, y = turned_y + pose.y;
+        double nx = 0, ny = 0, residual = 0;
+        if (lines_[k].is_circle) {
+          const FieldArc& arc = target_.curves.arcs[static_cast<std::size_t>(of_[k])];
+          const double dx = x - arc.center.x, dy = y - arc.center.y, out = std::max(std::hypot(dx, dy), 1e-9);
+          nx = dx / out;
+          ny = dy / out;
+          residual = out - arc.radius;
+        } else {
+          const FieldLine& line = target_.curves.lines[static_cast<std::size_t>(of_[k])];
+          const FieldPoint along = line.q - line.p;
+          const double length = norm(along);
+          nx = -along.y / length;
+          ny = along.x / length;
+          residual = nx * (x - line.p.x) + ny * (y - line.p.y);
+        }
+        // What all marks of a line share does not average out.
+        const double own = mark.sigma * mark.sigma, common = mark.common_sigma * mark.common_sigma;
+        add({nx, ny, -nx * turned_y + ny * turned_x}, residual, std::sqrt(own + n * common), std::sqrt(own + common));
+      }
+    }
+    for_goals(pose, [&](FieldPoint at, double bearing_seen, double sigma) {
+      const double dx = at.x - pose.x, dy = at.y - pose.y, square = std::max(dx * dx + dy * dy, 0.04);
+      const double residual = wrap_angle(std::atan2(dy, dx) - pose.theta - bearing_seen);
+      add({dy / square, -dx / square, -1}, residual, sigma, sigma);
+    });
+  }
+
+  PoseFit result(const PoseGaussian& pose, double log_likelihood) const {
+    PoseFit fit;
+    fit.pose = pose;
+    fit.log_likelihood = log_likelihood;
+    for (std::size_t k = 0; k < lines_.size(); ++k) {
+      const SeenLine& line = lines_[k];
+      const bool explained = of_[k] >= 0;
+      ++fit.lines_seen;
+      fit.lines_explained += explained;
+      fit.marks_seen += static_cast<int>(line.marks.size());
+      fit.marks_explained += explained ? static_cast<int>(line.marks.size()) : 0;
+      if (line.is_circle) {
+        fit.circle_explained = explained;
+        continue;
+      }
+      const auto number = static_cast<std::size_t>(line.marks.front().line);
+      if (fit.line_of.size() <= number) fit.line_of.resize(number + 1, -1);
+      fit.line_of[number] = of_[k];
+    }
+    return fit;
+  }
+
+ private:
+  template <class Distance>
+  static double mean_cost(const SeenLine& line, double slack, Distance distance_of) {
+    double sum = 0;
+    for (const LineMark& mark : line.marks) {
+      const double off = distance_of(mark.at);
+      sum += std::min(off * off / (mark.sigma * mark.sigma + mark.common_sigma * mark.common_sigma + slack * slack),
+                      2 * kCap);
+    }
+    return sum / static_cast<double>(line.marks.size());
+  }
+
+  /// Calls each(field point, bearing seen, sigma) for what is known of the goals.
+  template <class Each>
+  void for_goals(const PoseGaussian& pose, Each each) const {
+    for (const Goal& seen : seen_.goals) {
+      const FieldModel::Goal* model = model_of(seen.color);
+      if (model == nullptr) continue;
+      const double x = goal_x(*model), half = model->width / 2;
+      // Seen from the field, the left post of the +x goal is at +y.
+      const double left = model->side == GoalSide::plus_x ? half : -half;
+      for (const GoalPost& post : seen.posts)
+        each(FieldPoint{x, post.side == PostSide::left ? left : -left}, bearing(post.position), kPostSigma);
+      if (!seen.posts.empty() || !seen.bearing) continue;
+      // Somewhere in the mouth: where it comes nearest to what is seen.
+      const double sideways =
+          std::tan(std::clamp(pose.theta + *seen.bearing - (model->side == GoalSide::plus_x ? 0 : kPi), -1.4, 1.4));
+      const double y = pose.y + (x - pose.x) * sideways;
+      each(FieldPoint{x, std::clamp(y, -half, half)}, *seen.bearing, kGoalSigma);
+    }
+  }
+  double goals(const PoseGaussian& pose) const {
+    double total = 0;
+    for_goals(pose, [&](FieldPoint at, double seen, double sigma) {
+      const double off = wrap_angle(std::atan2(at.y - pose.y, at.x - pose.x) - pose.theta - seen) / sigma;
+      total -= 0.5 * std::min(off * off, kGoalCap);
+    });
+    return total;
+  }
+  /// Floor that is seen does not lie behind a wall.
+  double free_floor(const FieldFromRobot& field_from_robot) const {
+    if (seen_.free_space == nullptr || !target_.field.walls) return 0;
+    const FreeSpace& space = *seen_.free_space;
+    constexpr double margin = 0.2, most = 8;  // [m]; log likelihood
+    double total = 0;
+    for (std::size_t k = 0; k < space.ranges.size(); ++k) {
+      if (space.states[k] == SectorState::unseen) continue;
+      const double angle = space.angle_min + static_cast<double>(k) * space.angle_increment;
+      const FieldPoint p =
+          field_from_robot * (space.origin + space.ranges[k] * FloorPoint{std::cos(angle), std::sin(angle)});
+      const Interval &x = target_.field.walls->x, &y = target_.field.walls->y;
+      const double slack = margin + 0.05 * space.ranges[k];
+      // Goals have floor, too.
+      double depth = 0;
+      for (const FieldModel::Goal& goal : target_.field.goals)
+        if (std::abs(p.y) < goal.width / 2 + slack) depth = std::max(depth, goal.depth);
+      const bool outside =
+          p.x < x.low - depth - slack || p.x > x.high + depth + slack || p.y < y.low - slack || p.y > y.high + slack;
+      total -= outside;
+    }
+    return std::max(total, -most);
+  }
+
+  const FieldModel::Goal* model_of(GoalColor color) const {
+    for (const FieldModel::Goal& goal : target_.field.goals)
+      if (goal.color == color) return &goal;
+    return nullptr;
+  }
+  double goal_x(const FieldModel::Goal& goal) const {
+    const bool plus = goal.side == GoalSide::plus_x;
+    if (target_.field.walls) return plus ? target_.field.walls->x.high : target_.field.walls->x.low;
+    return (plus ? 1 : -1) * target_.field.length / 2;
+  }
+
+  friend RecycledVector<PoseFit> tassilo::search_poses(const FieldTarget&, const PoseObservation&);
+
+  const FieldTarget& target_;
+  const PoseObservation& seen_;
+  RecycledVector<SeenLine> lines_;
+  RecycledVector<int> of_;  ///< Model line (or arc) of each seen line, -1: none.
+};
+
+PoseFit fit_with(Fitter& fitter, const PoseGaussian& prior) {
+  const Eigen::Matrix3d prior_information = prior.covariance.inverse();
+  const Eigen::Vector3d start(prior.x, prior.y, prior.theta);
+  PoseGaussian pose = prior;
+  Eigen::Matrix3d covariance = prior.covariance;
+  constexpr int iterations = 8;
+  for (int i = 0; i < iterations; ++i) {
+    // Lines are told apart by where they are once it is known where we are.
+    const double slack = std::min(2 * std::sqrt(covariance(0, 0) + covariance(1, 1)), 0.6);
+    const double turn = std::min(2 * std::sqrt(covariance(2, 2)), 0.35);
+    fitter.associate(pose, slack, turn);
+    Eigen::Matrix3d information = prior_information;
+    const Eigen::Vector3d off(pose.x - start[0], pose.y - start[1], wrap_angle(pose.theta - start[2]));
+    Eigen::Vector3d gradient = prior_information * off;
+    fitter.add_measurements(pose, information, gradient);
+    const Eigen::LDLT<Eigen::Matrix3d> solver(information);
+    const Eigen::Vector3d step = -solver.solve(gradient);
+    if (!step.allFinite()) break;
+    pose.x += step[0];
+    pose.y += step[1];
+    pose.theta = wrap_angle(pose.theta + step[2]);
+    covariance = solver.solve(Eigen::Matrix3d::Identity());
+    if (i > 1 && std::hypot(step[0], step[1]) < 1e-4 && std::abs(step[2]) < 1e-4) break;
+  }
+  pose.covariance = 0.5 * (covariance + covariance.transpose());
+  const double slack = std::min(std::sqrt(covariance(0, 0) + covariance(1, 1)), 0.3);
+  const double log_likelihood = fitter.associate(pose, slack, 0.05);
+  return fitter.result(pose, log_likelihood);
+}
+
+}  // namespace
+
+PoseFit fit_pose(const FieldTarget& target, const PoseObservation& seen, const PoseGaussian& prior) {
+  Fitter fitter(target, seen);
+  return fit_with(fitter, prior);
+}
+
+RecycledVector<PoseFit> search_poses(const FieldTarget& target, const PoseObservation& seen) {
+  Fitter fitter(target, seen);
+  const auto& lines = fitter.lines();
+  const auto& models = target.curves.lines;
+  struct Candidate {
+    double x, y, theta, score;
+  };
+  RecycledVector<Candidate> candidates;
+  const double margin = 0.5;  // [m] a robot stands on the field, or just off it
+  const double x_most = target.field.length / 2 + margin, y_most = target.field.width / 2 + margin;
+  const auto offer = [&](double x, double y, double theta) {
+    if (!(std::abs(x) <= x_most && std::abs(y) <= y_most)) return;
+    PoseGaussian pose{x, y, wrap_angle(theta), {}};
+    candidates.push_back({x, y, pose.theta, fitter.associate(pose, 0.15, 0.15)});
+  };
+  /// Turns that bring a seen line along one of the field's.
+  const auto turns = [&](const SeenLine& line, auto each) {
+    RecycledVector<double> done;
+    for (const FieldLine& model : models) {
+      if (model.is_wall != line.is_wall) continue;
+      for (const double half : {0., kPi}) {
+        const double theta = wrap_angle(angle_of(model) - line.angle + half);
+        if (std::ranges::any_of(done, [&](double other) { return std::abs(wrap_angle(other - theta)) < 0.05; }))
+          continue;
+        done.push_back(theta);
+        each(theta);
+      }
+    }
+  };
+  /// The pose at which a seen line lies on `model` and the point `from` of the robot's floor at `to`, along the line.
+  RecycledVector<std::size_t> straight;
+  const SeenLine* circle = nullptr;
+  for (std::size_t k = 0; k < lines.size(); ++k)
+    if (lines[k].is_circle)
+      circle = &lines[k];
+    else
+      straight.push_back(k);
+  std::ranges::sort(straight, std::greater<>{}, [&](std::size_t k) { return distance(lines[k].first, lines[k].last); });
+  constexpr std::size_t most_straight = 4;
+  if (straight.size() > most_straight) straight.resize(most_straight);
+
+  for (std::size_t i = 0; i < straight.size(); ++i) {
+    const SeenLine& a = lines[straight[i]];
+    turns(a, [&](double theta) {
+      const double c = std::cos(theta), s = std::sin(theta);
+      const auto turned = [&](FloorPoint p) { return FieldPoint{c * p.x - s * p.y, s * p.x + c * p.y}; };
+      for (std::size_t j = i + 1; j < straight.size(); ++j) {
+        const SeenLine& b = lines[straight[j]];
+        if (std::abs(wrap_half_turn(a.angle - b.angle)) < 0.5) continue;
+        for (const FieldLine& of_a : models) {
+          if (of_a.is_wall != a.is_wall || std::abs(wrap_half_turn(angle_of(of_a) - a.angle - theta)) > 0.1) continue;
+          for (const FieldLine& of_b : models) {
+            if (of_b.is_wall != b.is_wall || std::abs(wrap_half_turn(angle_of(of_b) - b.angle - theta)) > 0.15)
+              continue;
+            // Two distances across two lines.
+            const FieldPoint da = of_a.q - of_a.p, db = of_b.q - of_b.p, pa = turned(a.middle), pb = turned(b.middle);
+            const double det = cross(da, db);
+            const double ra = cross(da, of_a.p - pa), rb = cross(db, of_b.p - pb);
+            // cross(da, t) = ra, cross(db, t) = rb
+            offer((db.x * ra - da.x * rb) / det, (db.y * ra - da.y * rb) / det, theta);
+          }
+        }
+      }
+      if (circle != nullptr && !target.curves.arcs.empty()) {
+        // The centre from marks: their normals meet there.
+        FloorPoint sum;
+        for (const LineMark& mark : circle->marks) sum = sum + mark.at;
+        const FieldArc& arc = target.curves.arcs.front();
+        FloorPoint center = (1 / static_cast<double>(circle->marks.size())) * sum;
+        Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
+        Eigen::Vector2d vector = Eigen::Vector2d::Zero();
+        for (const LineMark& mark : circle->marks) {
+          const Eigen::Vector2d n(mark.across.x, mark.across.y);
+          const Eigen::Matrix2d off = Eigen::Matrix2d::Identity() - n * n.transpose();
+          information += off;
+          vector += off * Eigen::Vector2d(mark.at.x, mark.at.y);
+        }
+        if (information.determinant() > 1e-6) {
+          const Eigen::Vector2d solved = information.inverse() * vector;
+          center = {solved[0], solved[1]};
+        }
+        const FieldPoint at = turned(center);
+        offer(arc.center.x - at.x, arc.center.y - at.y, theta);
+      }
+      for (const Goal& goal : seen.goals) {
+        const FieldModel::Goal* model = fitter.model_of(goal.color);
+        if (model == nullptr || !goal.position) continue;
+        const FieldPoint at = turned(*goal.position);
+        offer(fitter.goal_x(*model) - at.x, -at.y, theta);
+      }
+    });
+  }
+  for (const Goal& goal : seen.goals) {
+    const FieldModel::Goal* model = fitter.model_of(goal.color);
+    if (model == nullptr || goal.posts.size() != 2) continue;
+    const bool first_is_left = goal.posts[0].side == PostSide::left;
+    const FloorPoint left = goal.posts[first_is_left ? 0 : 1].position,
+                     right = goal.posts[first_is_left ? 1 : 0].position;
+    const double half = model->width / 2, y_left = model->side == GoalSide::plus_x ? half : -half;
+    const double theta = std::atan2(2 * y_left, 0) - bearing(left - right);
+    const FloorPoint middle = 0.5 * (left + right);
+    offer(fitter.goal_x(*model) - (std::cos(theta) * middle.x - std::sin(theta) * middle.y),
+          -(std::sin(theta) * middle.x + std::cos(theta) * middle.y), theta);
+  }
+
+  constexpr std::size_t most_fits = 40, most_found = 12;
+  std::ranges::sort(candidates, std::greater<>{}, &Candidate::score);
+  RecycledVector<PoseFit> found;
+  std::size_t fits = 0;
+  RecycledVector<Candidate> tried;
+  for (const Candidate& candidate : candidates) {
+    if (fits == most_fits) break;
+    // Near one that was tried it would end there.
+    if (std::ranges::any_of(tried, [&](const Candidate& other) {
+          return std::hypot(other.x - candidate.x, other.y - candidate.y) < 0.15 &&
+                 std::abs(wrap_angle(other.theta - candidate.theta)) < 0.1;
+        }))
+      continue;
+    tried.push_back(candidate);
+    ++fits;
+    PoseGaussian prior{candidate.x, candidate.y, candidate.theta, {}};
+    prior.covariance = Eigen::Vector3d(1, 1, 0.1).asDiagonal();
+    PoseFit fit = fit_with(fitter, prior);
+    constexpr double most_sigma = 0.5;  // [m], [rad]: more is not tied down
+    if (fit.pose.covariance(0, 0) > most_sigma * most_sigma || fit.pose.covariance(1, 1) > most_sigma * most_sigma ||
+        fit.pose.covariance(2, 2) > 0.04)
+      continue;
+    if (!(std::abs(fit.pose.x) <= x_most && std::abs(fit.pose.y) <= y_most)) continue;
+    const bool known = std::ranges::any_of(found, [&](const PoseFit& other) {
+      return std::hypot(other.pose.x - fit.pose.x, other.pose.y - fit.pose.y) < 0.2 &&
+             std::abs(wrap_angle(other.pose.theta - fit.pose.theta)) < 0.15;
+    });
+    if (!known) found.push_back(std::move(fit));
+  }
+  std::ranges::sort(found, std::greater<>{}, &PoseFit::log_likelihood);
+  if (found.size() > most_found) found.resize(most_found);
+  return found;
+}
+
+}  // namespace tassilo

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "tassilo/field/field_curves.h"
+#include "tassilo/localize/pose_belief.h"
+#include "tassilo/scene/line_mark.h"
+#include "tassilo/scene/scene.h"
+
+namespace tassilo {
+
+/// The field as the fit wants it, computed once.
+struct FieldTarget {
+  explicit FieldTarget(const FieldModel& model) : field(model), curves(field_curves(model)) {}
+  FieldModel field;
+  FieldCurves curves;
+};
+
+/// What one frame tells of the pose; borrowed.
+struct PoseObservation {
+  std::span<const LineMark> marks;  ///< Of one line side by side.
+  std::span<const Goal> goals;
+  const FreeSpace* free_space = nullptr;  ///< Floor that is seen cannot lie behind a wall.
+};
+
+struct PoseFit {
+  PoseGaussian pose;
+  double log_likelihood = 0;  ///< Of what is seen; comparable between poses for one observation only.
+  int lines_seen = 0, lines_explained = 0;
+  int marks_seen = 0, marks_explained = 0;
+  RecycledVector<int> line_of;  ///< By number of the seen line: index into curves.lines, or -1.
+  bool circle_explained = false;
+};
+
+/// The pose near `prior` that explains marks and goals best, and how well: robust non-linear least squares on distances
+/// across lines, the prior one measurement more. Each seen line belongs to one line of the field or to none.
+///
+/// cost     O(iterations x (marks + seen lines x field lines)), some 10 us; safe from any thread
+/// source   Gauss-Newton with Cauchy weights; P. J. Huber, "Robust Statistics", 1981; own association
+PoseFit fit_pose(const FieldTarget& target, const PoseObservation& seen, const PoseGaussian& prior);
+
+/// Poses that explain a frame with nothing known before, best first: from pairs of lines that cross, the circle and a
+/// line, goals and a line. Empty when what is seen does not tie all of x, y, theta down.
+///
+/// cost     some ms; safe from any thread
+RecycledVector<PoseFit> search_poses(const FieldTarget& target, const PoseObservation& seen);
+
+}  // namespace tassilo
