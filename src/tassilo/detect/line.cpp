@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "tassilo/base/error.h"
+#include "tassilo/base/option_check.h"
 #include "tassilo/base/sort_stably.h"
 #include "tassilo/detect/edge.h"
 #include "tassilo/geometry/angle.h"
@@ -522,16 +522,12 @@ std::optional<CircleSeen> find_circle(const View& view, RecycledVector<LinePoint
 }  // namespace
 
 void LineOptions::check() const {
-  const auto above = [](const char* name, double value, double low) {
-    if (!(value > low))
-      throw Error(std::string("line.") + name, "is " + std::to_string(value) + ", must be > " + std::to_string(low));
-  };
-  above("tolerance_px", tolerance_px, 0);
-  above("min_points", min_points, 2);
-  above("min_length", min_length, 0);
-  above("max_gap", max_gap, 0);
-  above("max_lines", max_lines, 0);
-  above("min_arc", min_arc, 0);
+  check_above("line.tolerance_px", tolerance_px, 0);
+  check_above("line.min_points", min_points, 2);
+  check_above("line.min_length", min_length, 0);
+  check_above("line.max_gap", max_gap, 0);
+  check_above("line.max_lines", max_lines, 0);
+  check_above("line.min_arc", min_arc, 0);
 }
 
 Lines find_lines(const View& view, const LineOptions& options) {

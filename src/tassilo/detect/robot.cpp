@@ -9,8 +9,8 @@
 #include <span>
 #include <string>
 
-#include "tassilo/base/error.h"
 #include "tassilo/base/median.h"
+#include "tassilo/base/option_check.h"
 #include "tassilo/base/sort_stably.h"
 #include "tassilo/detect/edge.h"
 #include "tassilo/detect/internal/column_runs.h"
@@ -296,17 +296,12 @@ RecycledVector<RobotSeen> without_rims(const View& view, RecycledVector<RobotSee
 }  // namespace
 
 void RobotOptions::check() const {
-  const auto least = [](const char* name, double value, double low, bool open) {
-    if (open ? !(value > low) : !(value >= low))
-      throw Error(std::string("robot.") + name,
-                  "is " + std::to_string(value) + ", must be " + (open ? "> " : ">= ") + std::to_string(low));
-  };
-  least("min_columns", min_columns, 1, false);
-  least("min_rows", min_rows, 1, false);
-  least("gap_px", gap_px, 0, false);
-  least("max_step", max_step, 0, true);
-  least("foot_sigma_px", foot_sigma_px, 0, true);
-  least("bound_sigmas", bound_sigmas, 0, true);
+  check_at_least("robot.min_columns", min_columns, 1);
+  check_at_least("robot.min_rows", min_rows, 1);
+  check_at_least("robot.gap_px", gap_px, 0);
+  check_above("robot.max_step", max_step, 0);
+  check_above("robot.foot_sigma_px", foot_sigma_px, 0);
+  check_above("robot.bound_sigmas", bound_sigmas, 0);
 }
 
 RecycledVector<RobotSeen> find_robots(const View& view, const RobotOptions& options) {

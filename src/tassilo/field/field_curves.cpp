@@ -20,6 +20,11 @@ void add_end_wall(std::vector<FieldLine>& lines, const FieldModel& field, GoalSi
 
 }  // namespace
 
+FieldExtent field_extent(const FieldModel& field) {
+  if (field.walls) return {field.walls->x, field.walls->y};
+  return {{-field.length / 2, field.length / 2}, {-field.width / 2, field.width / 2}};
+}
+
 FieldCurves field_curves(const FieldModel& field) {
   FieldCurves curves;
   std::vector<FieldLine>& lines = curves.lines;

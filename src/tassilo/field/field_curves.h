@@ -28,6 +28,12 @@ struct FieldCurves {
   std::vector<FieldArc> arcs;
 };
 
+/// What bounds a field: the inner faces of its walls, else the outer edges of its lines. [m]
+struct FieldExtent {
+  Interval x, y;
+};
+FieldExtent field_extent(const FieldModel& field);
+
 /// Marks of a field. Walls have gaps where goals are; lines are given by their middles.
 FieldCurves field_curves(const FieldModel& field);
 

@@ -15,4 +15,7 @@ inline double wrap_angle(double angle) {
   return (wrapped < 0 ? wrapped + turn : wrapped) - std::numbers::pi;
 }
 
+/// The same direction of a line that has no sense along it, in [-pi/2, pi/2). [rad]
+inline double wrap_half_turn(double angle) { return 0.5 * wrap_angle(2 * angle); }
+
 }  // namespace tassilo

@@ -5,11 +5,12 @@
 #include <span>
 #include <string>
 
-#include "tassilo/base/error.h"
+#include "tassilo/base/option_check.h"
 #include "tassilo/base/sort_stably.h"
 #include "tassilo/contour/skeleton_contours.h"
 #include "tassilo/contour/sub_pixel_edges.h"
 #include "tassilo/geometry/angle.h"
+#include "tassilo/localize/internal/regression_line.h"
 #include "tassilo/region/algebra.h"
 #include "tassilo/region/morphology.h"
 #include "tassilo/region/skeleton.h"
@@ -21,8 +22,6 @@ namespace {
 struct TwoPoints {
   PixelPoint image, ideal;
 };
-
-double undirected_difference(double a, double b) { return std::abs(0.5 * wrap_angle(2 * (a - b))); }
 
 template <class Point>
 double direction(const Point& p, const Point& q) {
@@ -36,39 +35,11 @@ double off_line(const Point& at, const Point& p, const Point& q) {
   return length > 0 ? std::abs(cross(q - p, at - p)) / length : distance(at, p);
 }
 
-/// Sums for a regression line by total least squares.
-struct Moments {
-  double n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
-
-  void add(PixelPoint p) {
-    n += 1;
-    x += p.x;
-    y += p.y;
-    xx += p.x * p.x;
-    xy += p.x * p.y;
-    yy += p.y * p.y;
-  }
-  PixelPoint middle() const { return {x / n, y / n}; }
-  double sxx() const { return xx - x * x / n; }
-  double sxy() const { return xy - x * y / n; }
-  double syy() const { return yy - y * y / n; }
-  PixelPoint along() const {
-    const double angle = 0.5 * std::atan2(2 * sxy(), sxx() - syy());
-    return {std::cos(angle), std::sin(angle)};
-  }
-  /// Root mean square distance from the line.
-  double residual() const {
-    const double half = 0.5 * (sxx() + syy()), root = std::hypot(0.5 * (sxx() - syy()), sxy());
-    return std::sqrt(std::max(half - root, 0.) / n);
-  }
-};
-
 BoundaryPiece piece_of(std::span<const TwoPoints> points) {
-  Moments moments;
-  for (const TwoPoints& point : points) moments.add(point.ideal);
-  const PixelPoint middle = moments.middle(), along = moments.along();
-  const auto on_line = [&](PixelPoint p) { return middle + dot(p - middle, along) * along; };
-  return {on_line(points.front().ideal),   on_line(points.back().ideal), moments.residual(),
+  const auto line = regression_line<ImageFrame>(points, &TwoPoints::ideal, [](const TwoPoints&) { return 1; });
+  const PixelPoint along{std::cos(line.angle), std::sin(line.angle)};
+  const auto on_line = [&](PixelPoint p) { return line.middle + dot(p - line.middle, along) * along; };
+  return {on_line(points.front().ideal),   on_line(points.back().ideal), line.residual,
           static_cast<int>(points.size()), points.front().image,         points.back().image};
 }
 
@@ -100,18 +71,17 @@ struct JoinLimits {
 /// Joins b to a when both lie on one line; ends are the outermost ones.
 template <class Line>
 bool join(Line& a, const Line& b, const JoinLimits& limits) {
-  if (undirected_difference(direction(a.p, a.q), direction(b.p, b.q)) > limits.angle) return false;
+  if (std::abs(wrap_half_turn(direction(a.p, a.q) - direction(b.p, b.q))) > limits.angle) return false;
   const bool a_longer = distance(a.p, a.q) >= distance(b.p, b.q);
   const Line &longer = a_longer ? a : b, &shorter = a_longer ? b : a;
   if (std::max(off_line(shorter.p, longer.p, longer.q), off_line(shorter.q, longer.p, longer.q)) > limits.offset)
     return false;
-  const double gap = std::min({distance(a.p, b.p), distance(a.p, b.q), distance(a.q, b.p), distance(a.q, b.q)});
   const auto along = longer.q - longer.p;
   const double length = norm(along);
   const auto place = [&](const auto& p) { return dot(p - longer.p, along) / length; };
-  const double of_p = place(shorter.p), of_q = place(shorter.q), low = std::min(of_p, of_q),
-               high = std::max(of_p, of_q);
-  const bool overlap = high >= 0 && low <= length;
+  const double of_p = place(shorter.p), of_q = place(shorter.q);
+  const bool overlap = std::max(of_p, of_q) >= 0 && std::min(of_p, of_q) <= length;
+  const double gap = std::min({distance(a.p, b.p), distance(a.p, b.q), distance(a.q, b.p), distance(a.q, b.q)});
   if (!overlap && gap > limits.gap) return false;
   // The line of the longer one, between the outermost ends.
   struct End {
@@ -121,8 +91,8 @@ bool join(Line& a, const Line& b, const JoinLimits& limits) {
   };
   const End ends[] = {{longer.p, longer.image_p, 0},
                       {longer.q, longer.image_q, length},
-                      {shorter.p, shorter.image_p, place(shorter.p)},
-                      {shorter.q, shorter.image_q, place(shorter.q)}};
+                      {shorter.p, shorter.image_p, of_p},
+                      {shorter.q, shorter.image_q, of_q}};
   const auto [first, last] = std::ranges::minmax(ends, {}, &End::place);
   Line joined = longer;
   joined.p = first.point;
@@ -154,10 +124,9 @@ void join_all(RecycledVector<Line>& lines, const JoinLimits& limits) {
 }  // namespace
 
 void BoundaryOptions::check() const {
-  const auto above = [](const char* name, double value, double low) {
-    if (!(value > low) || !std::isfinite(value))
-      throw Error(std::string("boundary.") + name,
-                  "is " + std::to_string(value) + ", must be > " + std::to_string(low));
+  const auto above = [](const std::string& name, double value, double low) {
+    check_above("boundary." + name, value, low);
+    check_finite("boundary." + name, value);
   };
   above("reach_px", reach_px, 0);
   above("split_px", split_px, 0);
@@ -199,7 +168,7 @@ Boundary find_boundary(const FrameView& frame, const Region& wall, const Region&
   }
 
   for (const BoundaryPiece& piece : boundary.pieces) {
-    const double inclination = undirected_difference(direction(piece.p, piece.q), 0);
+    const double inclination = std::abs(wrap_half_turn(direction(piece.p, piece.q)));
     if (distance(piece.p, piece.q) >= options.min_length_px && inclination <= radians(options.max_inclination_deg))
       boundary.lines.push_back(piece);
   }

@@ -7,9 +7,7 @@
 #include <numbers>
 
 #include "tassilo/geometry/angle.h"
-#include "tassilo/region/algebra.h"
 #include "tassilo/region/morphology.h"
-#include "tassilo/region/relation.h"
 
 namespace tassilo {
 namespace {
@@ -22,9 +20,9 @@ struct Wall {
   double normal = 0;    ///< Outwards. [rad]
   double distance = 0;  ///< From the field's centre. [m]
 };
-std::array<Wall, 4> walls_of(const FieldModel& field) {
-  const Interval x = field.walls ? field.walls->x : Interval{-field.length / 2, field.length / 2};
-  const Interval y = field.walls ? field.walls->y : Interval{-field.width / 2, field.width / 2};
+/// Counter-clockwise: the one opposite to k is k + 2, modulo 4.
+std::array<Wall, 4> walls_of(const FieldExtent& extent) {
+  const auto& [x, y] = extent;
   return {
       {{"x_plus", 0, x.high}, {"y_plus", kPi / 2, y.high}, {"x_minus", kPi, -x.low}, {"y_minus", -kPi / 2, -y.low}}};
 }
@@ -115,21 +113,20 @@ BoundaryFix pose_by_boundary(const FieldTarget& target, std::span<const Boundary
   fix.pose = predicted;
   RecycledVector<FloorLine> lines;
   for (const BoundarySegment& segment : segments) lines.push_back(floor_line(segment, camera));
-  const std::array<Wall, 4> walls = walls_of(target.field);
+  const std::array<Wall, 4> walls = walls_of(target.extent);
   if (lines.empty()) {
     fix.why = "no line of the boundary";
     return fix;
   }
 
   struct Pair {
-    std::size_t line;
-    const Wall* wall;
+    std::size_t line, wall;
   };
   RecycledVector<Pair> pairs;
   // By a goal: its end line, then a side line.
   for (const GoalInImage& goal : goals) {
-    const auto model = std::ranges::find(target.field.goals, goal.color, &FieldModel::Goal::color);
-    if (model == target.field.goals.end() || goal.region.empty()) continue;
+    const FieldModel::Goal* model = goal_of(target, goal.color);
+    if (model == nullptr || goal.region.empty()) continue;
     constexpr double reach = 6;  // [px] the rims of goal and wall, both blurred
     const Region near = dilation(goal.region, disc(reach));
     std::optional<std::size_t> end;
@@ -137,12 +134,12 @@ BoundaryFix pose_by_boundary(const FieldTarget& target, std::span<const Boundary
       if (touches(segments[k], near) && (!end || lines[k].length > lines[*end].length)) end = k;
     if (!end) continue;
     const bool plus = model->side == GoalSide::plus_x;
-    pairs.push_back({*end, &walls[plus ? 0 : 2]});
+    pairs.push_back({*end, plus ? 0u : 2u});
     if (const auto side = across(lines, *end)) {
       const PixelBox box = bounding_box(goal.region);
       const bool left = lines[*side].column < 0.5 * (box.x0 + box.x1 - 1);
       // Looking at the +x goal, +y is to the left.
-      pairs.push_back({*side, &walls[left == plus ? 1 : 3]});
+      pairs.push_back({*side, left == plus ? 1u : 3u});
     }
     break;
   }
@@ -153,9 +150,10 @@ BoundaryFix pose_by_boundary(const FieldTarget& target, std::span<const Boundary
       return fix;
     }
     const auto nearest_wall = [&](std::size_t k) {
-      return &*std::ranges::min_element(walls, {}, [&](const Wall& wall) {
+      const auto nearest = std::ranges::min_element(walls, {}, [&](const Wall& wall) {
         return std::abs(wrap_angle(wall.normal - lines[k].normal - predicted->theta));
       });
+      return static_cast<std::size_t>(nearest - walls.begin());
     };
     std::size_t longest = 0;
     for (std::size_t k = 1; k < lines.size(); ++k)
@@ -166,7 +164,7 @@ BoundaryFix pose_by_boundary(const FieldTarget& target, std::span<const Boundary
   // Parallel walls cannot both be meant, and a line of the other handedness is none of the field's.
   if (pairs.size() == 2) {
     const double seen = wrap_angle(lines[pairs[1].line].normal - lines[pairs[0].line].normal);
-    const double meant = wrap_angle(pairs[1].wall->normal - pairs[0].wall->normal);
+    const double meant = wrap_angle(walls[pairs[1].wall].normal - walls[pairs[0].wall].normal);
     if (std::abs(wrap_angle(seen - meant)) > kPi / 4) {
       pairs.pop_back();
       fix.why = "the second line turns the wrong way; ";
@@ -183,30 +181,25 @@ BoundaryFix pose_by_boundary(const FieldTarget& target, std::span<const Boundary
     return fix;
   }
   // With nothing known before, the lines alone: a prediction that says nothing.
-  PoseGaussian pose = predicted ? *predicted
-                                : PoseGaussian{0, 0, wrap_angle(pairs[0].wall->normal - lines[pairs[0].line].normal),
-                                               Eigen::Vector3d(100, 100, 10).asDiagonal()};
-  // A line that lies where the field has none is refused: where it would put the robot.
-  for (const Pair& pair : pairs) {
-    const double inside = pair.wall->distance - lines[pair.line].distance;
-    const double across_field = pair.wall == &walls[0] || pair.wall == &walls[2]
-                                    ? walls[0].distance + walls[2].distance
-                                    : walls[1].distance + walls[3].distance;
+  PoseGaussian pose = predicted
+                          ? *predicted
+                          : PoseGaussian{0, 0, wrap_angle(walls[pairs[0].wall].normal - lines[pairs[0].line].normal),
+                                         Eigen::Vector3d(100, 100, 10).asDiagonal()};
+  // A line that lies where the field has none is refused.
+  for (const auto& [line, wall] : pairs) {
     constexpr double margin = 0.3;  // [m]
-    if (inside < pair.wall->distance - across_field - margin) {
-      fix.why.append(pair.wall->name).append(" would be farther than the field is wide");
-      fix.pose = predicted;
-      return fix;
-    }
+    if (lines[line].distance <= walls[wall].distance + walls[(wall + 2) % 4].distance + margin) continue;
+    fix.why.append(walls[wall].name).append(" would be farther than the field is wide");
+    return fix;
   }
-  for (const Pair& pair : pairs) {
-    update(pose, lines[pair.line], *pair.wall);
-    fix.matches.push_back({pair.line, pair.wall->name});
+  for (const auto& [line, wall] : pairs) {
+    update(pose, lines[line], walls[wall]);
+    fix.matches.push_back({line, walls[wall].name});
   }
   fix.pose = pose;
   fix.kind = pairs.size() == 2 ? PoseKind::two_lines : PoseKind::one_line;
-  fix.why.append(pairs[0].wall->name);
-  if (pairs.size() == 2) fix.why.append(" and ").append(pairs[1].wall->name);
+  fix.why.append(walls[pairs[0].wall].name);
+  if (pairs.size() == 2) fix.why.append(" and ").append(walls[pairs[1].wall].name);
   return fix;
 }
 

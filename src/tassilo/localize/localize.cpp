@@ -5,23 +5,18 @@
 #include <cmath>
 #include <numbers>
 
-#include "tassilo/base/error.h"
+#include "tassilo/base/option_check.h"
 #include "tassilo/base/sort_stably.h"
 #include "tassilo/geometry/angle.h"
 
 namespace tassilo {
 namespace {
 
-bool near_each_other(const PoseGaussian& a, const PoseGaussian& b) {
-  constexpr double distance = 0.3, turn = 0.2;  // [m], [rad] two fits to the same lines end closer than this
-  return std::hypot(a.x - b.x, a.y - b.y) < distance && std::abs(wrap_angle(a.theta - b.theta)) < turn;
-}
+/// Two fits to the same lines end closer than this.
+bool is_same_place(const PoseGaussian& a, const PoseGaussian& b) { return are_near(a, b, 0.3, 0.2); }
 
 /// May wheels that lost their grip have brought us there?
-bool is_slip(const PoseGaussian& from, const PoseGaussian& to) {
-  constexpr double distance = 0.7, turn = 0.5;  // [m], [rad]
-  return std::hypot(from.x - to.x, from.y - to.y) < distance && std::abs(wrap_angle(from.theta - to.theta)) < turn;
-}
+bool is_slip(const PoseGaussian& from, const PoseGaussian& to) { return are_near(from, to, 0.7, 0.5); }
 
 PoseGaussian mirrored(const PoseGaussian& pose) {
   return {-pose.x, -pose.y, wrap_angle(pose.theta + std::numbers::pi), pose.covariance};
@@ -35,7 +30,7 @@ void tidy(PoseBelief& belief, std::size_t most) {
   constexpr double least = -14;  // one in a million
   for (const PoseHypothesis& one : all) {
     if (kept.size() == most || one.log_weight < all.front().log_weight + least) break;
-    if (std::ranges::any_of(kept, [&](const PoseHypothesis& other) { return near_each_other(one.pose, other.pose); }))
+    if (std::ranges::any_of(kept, [&](const PoseHypothesis& other) { return is_same_place(one.pose, other.pose); }))
       continue;
     kept.push_back(one);
   }
@@ -55,7 +50,7 @@ Shares shares_of(const PoseBelief& belief) {
   for (const PoseHypothesis& one : belief.hypotheses) {
     const double weight = std::exp(one.log_weight);
     all += weight;
-    if (near_each_other(one.pose, mirrored(belief.hypotheses.front().pose))) mirror += weight;
+    if (is_same_place(one.pose, mirrored(belief.hypotheses.front().pose))) mirror += weight;
   }
   return all > 0 ? Shares{1 / all, mirror / all} : Shares{};
 }
@@ -63,17 +58,16 @@ Shares shares_of(const PoseBelief& belief) {
 }  // namespace
 
 void LocalizeOptions::check() const {
-  const auto above = [](const char* name, double value, double low, bool equal) {
-    if (!(value > low || (equal && value == low)) || !std::isfinite(value))
-      throw Error(std::string("localize.") + name,
-                  "is " + std::to_string(value) + ", must be " + (equal ? ">= " : "> ") + std::to_string(low));
+  const auto sigma = [](const std::string& name, double value, bool may_be_zero) {
+    (may_be_zero ? check_at_least : check_above)("localize." + name, value, 0);
+    check_finite("localize." + name, value);
   };
-  above("odometry_distance_sigma", odometry_distance_sigma, 0, true);
-  above("odometry_turn_sigma", odometry_turn_sigma, 0, true);
-  above("odometry_drift_sigma", odometry_drift_sigma, 0, false);
-  above("speed_sigma", speed_sigma, 0, false);
-  above("turn_rate_sigma", turn_rate_sigma, 0, false);
-  above("max_hypotheses", max_hypotheses, 2, true);
+  sigma("odometry_distance_sigma", odometry_distance_sigma, true);
+  sigma("odometry_turn_sigma", odometry_turn_sigma, true);
+  sigma("odometry_drift_sigma", odometry_drift_sigma, false);
+  sigma("speed_sigma", speed_sigma, false);
+  sigma("turn_rate_sigma", turn_rate_sigma, false);
+  check_at_least("localize.max_hypotheses", max_hypotheses, 2);
   if (!(certain >= 0.5 && certain < 1))
     throw Error("localize.certain", "is " + std::to_string(certain) + ", must be from 0.5 to below 1");
 }
@@ -134,16 +128,15 @@ Localized localize(const FieldTarget& target, const PoseBelief& before, const Ro
 
   std::optional<PoseFit> best;
   double best_weight = 0;
-  for (const PoseHypothesis& one : before.hypotheses) {
-    const PoseGaussian predicted = moved(one.pose, motion);
-    PoseFit fit = fit_pose(target, seen, predicted);
-    const double weight = one.log_weight + fit.log_likelihood;
+  const auto believe = [&](PoseFit fit, double before_seen) {
+    const double weight = before_seen + fit.log_likelihood;
     belief.hypotheses.push_back({fit.pose, weight});
-    if (!best || weight > best_weight) {
-      best = std::move(fit);
-      best_weight = weight;
-    }
-  }
+    if (best && weight <= best_weight) return;
+    best = std::move(fit);
+    best_weight = weight;
+  };
+  for (const PoseHypothesis& one : before.hypotheses)
+    believe(fit_pose(target, seen, moved(one.pose, motion)), one.log_weight);
   // Two lines and more that the best place does not explain: perhaps it is another.
   constexpr int enough_marks = 16, enough_doubts = 3;
   if (best && best->marks_seen >= enough_marks) {
@@ -155,15 +148,11 @@ Localized localize(const FieldTarget& target, const PoseBelief& before, const Ro
     // Log weights of newcomers: a robot slips now and then, is carried away once in an hour's hundred thousand frames,
     // and a place that was not believed in before did not explain what was seen then.
     constexpr double slipped = -4, carried_away = -12;
+    std::optional<PoseGaussian> expected;
+    if (!before.hypotheses.empty()) expected = moved(before.hypotheses.front().pose, motion);
     for (PoseFit& fit : search_poses(target, seen)) {
-      double weight = fit.log_likelihood;
-      if (!before.hypotheses.empty())
-        weight += is_slip(moved(before.hypotheses.front().pose, motion), fit.pose) ? slipped : carried_away;
-      belief.hypotheses.push_back({fit.pose, weight});
-      if (!best || weight > best_weight) {
-        best = std::move(fit);
-        best_weight = weight;
-      }
+      const double newcomer = !expected ? 0 : is_slip(*expected, fit.pose) ? slipped : carried_away;
+      believe(std::move(fit), newcomer);
     }
   }
   tidy(belief, static_cast<std::size_t>(options.max_hypotheses));
@@ -171,8 +160,8 @@ Localized localize(const FieldTarget& target, const PoseBelief& before, const Ro
     result.why = "no line, circle or goal ties the pose down";
     return result;
   }
-  belief.tied = best->lines_explained > 0;
-  if (belief.tied) belief.fixed_at = t;
+  const bool tied = best->lines_explained > 0;
+  if (tied) belief.fixed_at = t;
   result.line_of = best->line_of;
 
   const Shares shares = shares_of(belief);
@@ -187,7 +176,7 @@ Localized localize(const FieldTarget& target, const PoseBelief& before, const Ro
   told.theta = pose.theta;
   for (int r = 0; r < 3; ++r)
     for (int c = 0; c < 3; ++c) told.covariance[static_cast<std::size_t>(3 * r + c)] = pose.covariance(r, c);
-  told.kind = belief.tied ? PoseKind::model : PoseKind::predicted;
+  told.kind = tied ? PoseKind::model : PoseKind::predicted;
   told.mirror = shares.best < options.certain;
   told.age = t - belief.fixed_at;
   result.pose = told;

@@ -2,7 +2,10 @@
 
 #include <Eigen/Core>
 
+#include <cmath>
+
 #include "tassilo/base/recycled.h"
+#include "tassilo/geometry/angle.h"
 #include "tassilo/geometry/pose2.h"
 
 namespace tassilo {
@@ -22,6 +25,11 @@ inline PoseGaussian pose_gaussian(double x, double y, double theta, double sigma
   return pose;
 }
 
+/// Are both less than `distance` apart, and turned by less than `turn`? [m, rad]
+inline bool are_near(const PoseGaussian& a, const PoseGaussian& b, double distance, double turn) {
+  return std::hypot(a.x - b.x, a.y - b.y) < distance && std::abs(wrap_angle(a.theta - b.theta)) < turn;
+}
+
 /// One place where the robot may be.
 struct PoseHypothesis {
   PoseGaussian pose;
@@ -33,7 +41,6 @@ struct PoseBelief {
   double t = 0;  ///< [s]
   RecycledVector<PoseHypothesis> hypotheses;
   double fixed_at = 0;  ///< When the best one was last tied to the field. [s]
-  bool tied = false;    ///< The best one was tied to the field at t.
   bool told = false;    ///< One place, or it and its mirror, were sure enough to be told.
   int doubts = 0;       ///< Frames in a row, or nearly so, that the best one did not explain.
 };

@@ -2,12 +2,13 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 #include "tassilo/geometry/angle.h"
+#include "tassilo/localize/internal/regression_line.h"
 
 namespace tassilo {
 namespace {
@@ -21,7 +22,6 @@ struct SeenLine {
   bool is_wall = false;
   double angle = 0;  ///< Of the line, modulo pi. [rad]
   FloorPoint middle;
-  double offset = 0;  ///< Of the line from the robot's origin along its normal at angle + 90 degrees. [m]
   FloorPoint first, last;
 };
 
@@ -36,34 +36,16 @@ RecycledVector<SeenLine> seen_lines(std::span<const LineMark> marks) {
     line.is_wall = marks[begin].kind == LineKind::boundary;
     line.first = marks[begin].at;
     line.last = marks[end - 1].at;
-    // Total least squares, each mark by its certainty.
-    double sum = 0, x = 0, y = 0;
-    for (const LineMark& mark : line.marks) {
-      const double weight = 1 / (mark.sigma * mark.sigma);
-      sum += weight;
-      x += weight * mark.at.x;
-      y += weight * mark.at.y;
-    }
-    line.middle = {x / sum, y / sum};
-    double xx = 0, xy = 0, yy = 0;
-    for (const LineMark& mark : line.marks) {
-      const double weight = 1 / (mark.sigma * mark.sigma);
-      const FloorPoint d = mark.at - line.middle;
-      xx += weight * d.x * d.x;
-      xy += weight * d.x * d.y;
-      yy += weight * d.y * d.y;
-    }
-    line.angle = 0.5 * std::atan2(2 * xy, xx - yy);
-    line.offset = -std::sin(line.angle) * line.middle.x + std::cos(line.angle) * line.middle.y;
+    const auto regression = regression_line<RobotFrame>(
+        line.marks, &LineMark::at, [](const LineMark& mark) { return 1 / (mark.sigma * mark.sigma); });
+    line.middle = regression.middle;
+    line.angle = regression.angle;
     constexpr std::size_t least = 4;
     if (line.marks.size() >= least) lines.push_back(line);
     begin = end;
   }
   return lines;
 }
-
-/// A difference of undirected angles in [-pi/2, pi/2). [rad]
-double wrap_half_turn(double angle) { return 0.5 * wrap_angle(2 * angle); }
 
 double angle_of(const FieldLine& line) { return std::atan2(line.q.y - line.p.y, line.q.x - line.p.x); }
 
@@ -80,6 +62,15 @@ constexpr double kMostEvidence = 6;  // independent places of a line: they share
 constexpr double kGoalCap = 25;
 constexpr double kPostSigma = 0.015;  // [rad] a pixel or two, and the width of a post's rim
 constexpr double kGoalSigma = 0.04;   // [rad] of a visible part that may lie anywhere in the mouth
+
+/// Where a goal's mouth is.
+double goal_x(const FieldTarget& target, const FieldModel::Goal& goal) {
+  return goal.side == GoalSide::plus_x ? target.extent.x.high : target.extent.x.low;
+}
+/// The left post as seen from the field; the right one is at minus that: looking at the +x goal, +y is to the left.
+double y_of_left_post(const FieldModel::Goal& goal) {
+  return goal.side == GoalSide::plus_x ? goal.width / 2 : -goal.width / 2;
+}
 
 class Fitter {
  public:
@@ -176,10 +167,7 @@ class Fitter {
       fit.lines_explained += explained;
       fit.marks_seen += static_cast<int>(line.marks.size());
       fit.marks_explained += explained ? static_cast<int>(line.marks.size()) : 0;
-      if (line.is_circle) {
-        fit.circle_explained = explained;
-        continue;
-      }
+      if (line.is_circle) continue;
       const auto number = static_cast<std::size_t>(line.marks.front().line);
       if (fit.line_of.size() <= number) fit.line_of.resize(number + 1, -1);
       fit.line_of[number] = of_[k];
@@ -203,11 +191,9 @@ class Fitter {
   template <class Each>
   void for_goals(const PoseGaussian& pose, Each each) const {
     for (const Goal& seen : seen_.goals) {
-      const FieldModel::Goal* model = model_of(seen.color);
+      const FieldModel::Goal* model = goal_of(target_, seen.color);
       if (model == nullptr) continue;
-      const double x = goal_x(*model), half = model->width / 2;
-      // Seen from the field, the left post of the +x goal is at +y.
-      const double left = model->side == GoalSide::plus_x ? half : -half;
+      const double x = goal_x(target_, *model), half = model->width / 2, left = y_of_left_post(*model);
       for (const GoalPost& post : seen.posts)
         each(FieldPoint{x, post.side == PostSide::left ? left : -left}, bearing(post.position), kPostSigma);
       if (!seen.posts.empty() || !seen.bearing) continue;
@@ -250,19 +236,6 @@ class Fitter {
     return std::max(total, -most);
   }
 
-  const FieldModel::Goal* model_of(GoalColor color) const {
-    for (const FieldModel::Goal& goal : target_.field.goals)
-      if (goal.color == color) return &goal;
-    return nullptr;
-  }
-  double goal_x(const FieldModel::Goal& goal) const {
-    const bool plus = goal.side == GoalSide::plus_x;
-    if (target_.field.walls) return plus ? target_.field.walls->x.high : target_.field.walls->x.low;
-    return (plus ? 1 : -1) * target_.field.length / 2;
-  }
-
-  friend RecycledVector<PoseFit> tassilo::search_poses(const FieldTarget&, const PoseObservation&);
-
   const FieldTarget& target_;
   const PoseObservation& seen_;
   RecycledVector<SeenLine> lines_;
@@ -299,7 +272,146 @@ PoseFit fit_with(Fitter& fitter, const PoseGaussian& prior) {
   return fitter.result(pose, log_likelihood);
 }
 
+/// A place worth a fit, and how well it explains what is seen as it is.
+struct Candidate {
+  PoseGaussian pose;
+  double score = 0;
+};
+
+/// Where the normals of a circle's marks meet; their middle where they all point the same way.
+FloorPoint center_of(const SeenLine& circle) {
+  FloorPoint sum;
+  Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d vector = Eigen::Vector2d::Zero();
+  for (const LineMark& mark : circle.marks) {
+    sum = sum + mark.at;
+    const Eigen::Vector2d n(mark.across.x, mark.across.y);
+    const Eigen::Matrix2d off = Eigen::Matrix2d::Identity() - n * n.transpose();
+    information += off;
+    vector += off * Eigen::Vector2d(mark.at.x, mark.at.y);
+  }
+  if (information.determinant() <= 1e-6) return (1 / static_cast<double>(circle.marks.size())) * sum;
+  const Eigen::Vector2d center = information.inverse() * vector;
+  return {center[0], center[1]};
+}
+
+/// Collects poses at which a few of the things that are seen lie where the field has them.
+class Search {
+ public:
+  Search(const FieldTarget& target, const PoseObservation& seen, Fitter& fitter)
+      : target_(target), seen_(seen), fitter_(fitter) {}
+
+  /// On the field, or just off it.
+  bool may_stand(const PoseGaussian& pose) const {
+    constexpr double margin = 0.5;  // [m]
+    return std::abs(pose.x) <= target_.field.length / 2 + margin &&
+           std::abs(pose.y) <= target_.field.width / 2 + margin;
+  }
+
+  /// Best first.
+  RecycledVector<Candidate> candidates() {
+    RecycledVector<const SeenLine*> straight;
+    std::optional<FloorPoint> center;
+    for (const SeenLine& line : fitter_.lines()) {
+      if (line.is_circle)
+        center = center_of(line);
+      else
+        straight.push_back(&line);
+    }
+    std::ranges::sort(straight, std::greater<>{},
+                      [](const SeenLine* line) { return distance(line->first, line->last); });
+    constexpr std::size_t most_straight = 4;
+    if (straight.size() > most_straight) straight.resize(most_straight);
+    for (std::size_t i = 0; i < straight.size(); ++i)
+      for (const double theta : turns(*straight[i])) {
+        for (std::size_t j = i + 1; j < straight.size(); ++j) by_two_lines(*straight[i], *straight[j], theta);
+        if (center && !target_.curves.arcs.empty()) by_point(*center, target_.curves.arcs.front().center, theta);
+        for (const Goal& goal : seen_.goals)
+          if (const FieldModel::Goal* model = goal_of(target_, goal.color); model != nullptr && goal.position)
+            by_point(*goal.position, {goal_x(target_, *model), 0}, theta);
+      }
+    for (const Goal& goal : seen_.goals) by_posts(goal);
+    std::ranges::sort(found_, std::greater<>{}, &Candidate::score);
+    return std::exchange(found_, {});
+  }
+
+ private:
+  /// With a covariance for the fit that says little: a metre, 18 degrees.
+  void offer(double x, double y, double theta) {
+    const PoseGaussian pose{x, y, wrap_angle(theta), Eigen::Vector3d(1, 1, 0.1).asDiagonal()};
+    if (may_stand(pose)) found_.push_back({pose, fitter_.associate(pose, 0.15, 0.15)});
+  }
+  /// Orientations that bring a seen line along one of the field's.
+  RecycledVector<double> turns(const SeenLine& line) const {
+    RecycledVector<double> turns;
+    for (const FieldLine& model : target_.curves.lines) {
+      if (model.is_wall != line.is_wall) continue;
+      for (const double half : {0., kPi}) {
+        const double theta = wrap_angle(angle_of(model) - line.angle + half);
+        if (std::ranges::none_of(turns, [&](double other) { return std::abs(wrap_angle(other - theta)) < 0.05; }))
+          turns.push_back(theta);
+      }
+    }
+    return turns;
+  }
+  /// May a seen line be one of the field's, at an orientation of the robot?
+  static bool may_be(const SeenLine& line, const FieldLine& model, double theta, double tolerance) {
+    return model.is_wall == line.is_wall && std::abs(wrap_half_turn(angle_of(model) - line.angle - theta)) <= tolerance;
+  }
+  static FieldPoint turned(FloorPoint p, double theta) {
+    const double c = std::cos(theta), s = std::sin(theta);
+    return {c * p.x - s * p.y, s * p.x + c * p.y};
+  }
+  /// Two lines that cross are two of the field's.
+  void by_two_lines(const SeenLine& a, const SeenLine& b, double theta) {
+    if (std::abs(wrap_half_turn(a.angle - b.angle)) < 0.5) return;
+    const FieldPoint pa = turned(a.middle, theta), pb = turned(b.middle, theta);
+    for (const FieldLine& of_a : target_.curves.lines) {
+      if (!may_be(a, of_a, theta, 0.1)) continue;
+      for (const FieldLine& of_b : target_.curves.lines) {
+        if (!may_be(b, of_b, theta, 0.15)) continue;
+        // The place t moves both onto their lines: cross(da, t) = ra, cross(db, t) = rb.
+        const FieldPoint da = of_a.q - of_a.p, db = of_b.q - of_b.p;
+        const double det = cross(da, db), ra = cross(da, of_a.p - pa), rb = cross(db, of_b.p - pb);
+        offer((db.x * ra - da.x * rb) / det, (db.y * ra - da.y * rb) / det, theta);
+      }
+    }
+  }
+  /// A place of the floor is one of the field.
+  void by_point(FloorPoint seen, FieldPoint at, double theta) {
+    const FieldPoint from = turned(seen, theta);
+    offer(at.x - from.x, at.y - from.y, theta);
+  }
+  /// Both posts of a goal tell the orientation, too.
+  void by_posts(const Goal& goal) {
+    const FieldModel::Goal* model = goal_of(target_, goal.color);
+    if (model == nullptr || goal.posts.size() != 2) return;
+    const bool first_is_left = goal.posts[0].side == PostSide::left;
+    const FloorPoint left = goal.posts[first_is_left ? 0 : 1].position,
+                     right = goal.posts[first_is_left ? 1 : 0].position;
+    const double theta = std::atan2(2 * y_of_left_post(*model), 0) - bearing(left - right);
+    by_point(0.5 * (left + right), {goal_x(target_, *model), 0}, theta);
+  }
+
+  const FieldTarget& target_;
+  const PoseObservation& seen_;
+  Fitter& fitter_;
+  RecycledVector<Candidate> found_;
+};
+
+/// Do x, y and theta follow from what was seen, or from the prior alone?
+bool is_tied_down(const PoseGaussian& pose) {
+  constexpr double most_sigma = 0.5, most_turn_sigma = 0.2;  // [m], [rad]
+  return pose.covariance(0, 0) <= most_sigma * most_sigma && pose.covariance(1, 1) <= most_sigma * most_sigma &&
+         pose.covariance(2, 2) <= most_turn_sigma * most_turn_sigma;
+}
+
 }  // namespace
+
+const FieldModel::Goal* goal_of(const FieldTarget& target, GoalColor color) {
+  const auto goal = std::ranges::find(target.field.goals, color, &FieldModel::Goal::color);
+  return goal == target.field.goals.end() ? nullptr : &*goal;
+}
 
 PoseFit fit_pose(const FieldTarget& target, const PoseObservation& seen, const PoseGaussian& prior) {
   Fitter fitter(target, seen);
@@ -308,137 +420,20 @@ PoseFit fit_pose(const FieldTarget& target, const PoseObservation& seen, const P
 
 RecycledVector<PoseFit> search_poses(const FieldTarget& target, const PoseObservation& seen) {
   Fitter fitter(target, seen);
-  const auto& lines = fitter.lines();
-  const auto& models = target.curves.lines;
-  struct Candidate {
-    double x, y, theta, score;
-  };
-  RecycledVector<Candidate> candidates;
-  const double margin = 0.5;  // [m] a robot stands on the field, or just off it
-  const double x_most = target.field.length / 2 + margin, y_most = target.field.width / 2 + margin;
-  const auto offer = [&](double x, double y, double theta) {
-    if (!(std::abs(x) <= x_most && std::abs(y) <= y_most)) return;
-    PoseGaussian pose{x, y, wrap_angle(theta), {}};
-    candidates.push_back({x, y, pose.theta, fitter.associate(pose, 0.15, 0.15)});
-  };
-  /// Turns that bring a seen line along one of the field's.
-  const auto turns = [&](const SeenLine& line, auto each) {
-    RecycledVector<double> done;
-    for (const FieldLine& model : models) {
-      if (model.is_wall != line.is_wall) continue;
-      for (const double half : {0., kPi}) {
-        const double theta = wrap_angle(angle_of(model) - line.angle + half);
-        if (std::ranges::any_of(done, [&](double other) { return std::abs(wrap_angle(other - theta)) < 0.05; }))
-          continue;
-        done.push_back(theta);
-        each(theta);
-      }
-    }
-  };
-  /// The pose at which a seen line lies on `model` and the point `from` of the robot's floor at `to`, along the line.
-  RecycledVector<std::size_t> straight;
-  const SeenLine* circle = nullptr;
-  for (std::size_t k = 0; k < lines.size(); ++k)
-    if (lines[k].is_circle)
-      circle = &lines[k];
-    else
-      straight.push_back(k);
-  std::ranges::sort(straight, std::greater<>{}, [&](std::size_t k) { return distance(lines[k].first, lines[k].last); });
-  constexpr std::size_t most_straight = 4;
-  if (straight.size() > most_straight) straight.resize(most_straight);
-
-  for (std::size_t i = 0; i < straight.size(); ++i) {
-    const SeenLine& a = lines[straight[i]];
-    turns(a, [&](double theta) {
-      const double c = std::cos(theta), s = std::sin(theta);
-      const auto turned = [&](FloorPoint p) { return FieldPoint{c * p.x - s * p.y, s * p.x + c * p.y}; };
-      for (std::size_t j = i + 1; j < straight.size(); ++j) {
-        const SeenLine& b = lines[straight[j]];
-        if (std::abs(wrap_half_turn(a.angle - b.angle)) < 0.5) continue;
-        for (const FieldLine& of_a : models) {
-          if (of_a.is_wall != a.is_wall || std::abs(wrap_half_turn(angle_of(of_a) - a.angle - theta)) > 0.1) continue;
-          for (const FieldLine& of_b : models) {
-            if (of_b.is_wall != b.is_wall || std::abs(wrap_half_turn(angle_of(of_b) - b.angle - theta)) > 0.15)
-              continue;
-            // Two distances across two lines.
-            const FieldPoint da = of_a.q - of_a.p, db = of_b.q - of_b.p, pa = turned(a.middle), pb = turned(b.middle);
-            const double det = cross(da, db);
-            const double ra = cross(da, of_a.p - pa), rb = cross(db, of_b.p - pb);
-            // cross(da, t) = ra, cross(db, t) = rb
-            offer((db.x * ra - da.x * rb) / det, (db.y * ra - da.y * rb) / det, theta);
-          }
-        }
-      }
-      if (circle != nullptr && !target.curves.arcs.empty()) {
-        // The centre from marks: their normals meet there.
-        FloorPoint sum;
-        for (const LineMark& mark : circle->marks) sum = sum + mark.at;
-        const FieldArc& arc = target.curves.arcs.front();
-        FloorPoint center = (1 / static_cast<double>(circle->marks.size())) * sum;
-        Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
-        Eigen::Vector2d vector = Eigen::Vector2d::Zero();
-        for (const LineMark& mark : circle->marks) {
-          const Eigen::Vector2d n(mark.across.x, mark.across.y);
-          const Eigen::Matrix2d off = Eigen::Matrix2d::Identity() - n * n.transpose();
-          information += off;
-          vector += off * Eigen::Vector2d(mark.at.x, mark.at.y);
-        }
-        if (information.determinant() > 1e-6) {
-          const Eigen::Vector2d solved = information.inverse() * vector;
-          center = {solved[0], solved[1]};
-        }
-        const FieldPoint at = turned(center);
-        offer(arc.center.x - at.x, arc.center.y - at.y, theta);
-      }
-      for (const Goal& goal : seen.goals) {
-        const FieldModel::Goal* model = fitter.model_of(goal.color);
-        if (model == nullptr || !goal.position) continue;
-        const FieldPoint at = turned(*goal.position);
-        offer(fitter.goal_x(*model) - at.x, -at.y, theta);
-      }
-    });
-  }
-  for (const Goal& goal : seen.goals) {
-    const FieldModel::Goal* model = fitter.model_of(goal.color);
-    if (model == nullptr || goal.posts.size() != 2) continue;
-    const bool first_is_left = goal.posts[0].side == PostSide::left;
-    const FloorPoint left = goal.posts[first_is_left ? 0 : 1].position,
-                     right = goal.posts[first_is_left ? 1 : 0].position;
-    const double half = model->width / 2, y_left = model->side == GoalSide::plus_x ? half : -half;
-    const double theta = std::atan2(2 * y_left, 0) - bearing(left - right);
-    const FloorPoint middle = 0.5 * (left + right);
-    offer(fitter.goal_x(*model) - (std::cos(theta) * middle.x - std::sin(theta) * middle.y),
-          -(std::sin(theta) * middle.x + std::cos(theta) * middle.y), theta);
-  }
-
+  Search search(target, seen, fitter);
   constexpr std::size_t most_fits = 40, most_found = 12;
-  std::ranges::sort(candidates, std::greater<>{}, &Candidate::score);
   RecycledVector<PoseFit> found;
-  std::size_t fits = 0;
-  RecycledVector<Candidate> tried;
-  for (const Candidate& candidate : candidates) {
-    if (fits == most_fits) break;
+  RecycledVector<PoseGaussian> tried;
+  for (const auto& [pose, score] : search.candidates()) {
+    if (tried.size() == most_fits) break;
     // Near one that was tried it would end there.
-    if (std::ranges::any_of(tried, [&](const Candidate& other) {
-          return std::hypot(other.x - candidate.x, other.y - candidate.y) < 0.15 &&
-                 std::abs(wrap_angle(other.theta - candidate.theta)) < 0.1;
-        }))
+    if (std::ranges::any_of(tried, [&](const PoseGaussian& other) { return are_near(other, pose, 0.15, 0.1); }))
       continue;
-    tried.push_back(candidate);
-    ++fits;
-    PoseGaussian prior{candidate.x, candidate.y, candidate.theta, {}};
-    prior.covariance = Eigen::Vector3d(1, 1, 0.1).asDiagonal();
-    PoseFit fit = fit_with(fitter, prior);
-    constexpr double most_sigma = 0.5;  // [m], [rad]: more is not tied down
-    if (fit.pose.covariance(0, 0) > most_sigma * most_sigma || fit.pose.covariance(1, 1) > most_sigma * most_sigma ||
-        fit.pose.covariance(2, 2) > 0.04)
-      continue;
-    if (!(std::abs(fit.pose.x) <= x_most && std::abs(fit.pose.y) <= y_most)) continue;
-    const bool known = std::ranges::any_of(found, [&](const PoseFit& other) {
-      return std::hypot(other.pose.x - fit.pose.x, other.pose.y - fit.pose.y) < 0.2 &&
-             std::abs(wrap_angle(other.pose.theta - fit.pose.theta)) < 0.15;
-    });
-    if (!known) found.push_back(std::move(fit));
+    tried.push_back(pose);
+    PoseFit fit = fit_with(fitter, pose);
+    if (!is_tied_down(fit.pose) || !search.may_stand(fit.pose)) continue;
+    const auto is_it = [&](const PoseFit& other) { return are_near(other.pose, fit.pose, 0.2, 0.15); };
+    if (std::ranges::none_of(found, is_it)) found.push_back(std::move(fit));
   }
   std::ranges::sort(found, std::greater<>{}, &PoseFit::log_likelihood);
   if (found.size() > most_found) found.resize(most_found);

@@ -12,10 +12,14 @@ namespace tassilo {
 
 /// The field as the fit wants it, computed once.
 struct FieldTarget {
-  explicit FieldTarget(const FieldModel& model) : field(model), curves(field_curves(model)) {}
+  explicit FieldTarget(const FieldModel& model)
+      : field(model), curves(field_curves(model)), extent(field_extent(model)) {}
   FieldModel field;
   FieldCurves curves;
+  FieldExtent extent;
 };
+/// The goal of a color; null where the field has none.
+const FieldModel::Goal* goal_of(const FieldTarget& target, GoalColor color);
 
 /// What one frame tells of the pose; borrowed.
 struct PoseObservation {
@@ -30,7 +34,6 @@ struct PoseFit {
   int lines_seen = 0, lines_explained = 0;
   int marks_seen = 0, marks_explained = 0;
   RecycledVector<int> line_of;  ///< By number of the seen line: index into curves.lines, or -1.
-  bool circle_explained = false;
 };
 
 /// The pose near `prior` that explains marks and goals best, and how well: robust non-linear least squares on distances
