@@ -2,67 +2,27 @@
 // image? Counted, not computed: every operator new and delete of the process, by the bytes that malloc really sets
 // aside. Each size is measured in a process of its own, as what is freed is kept for the next frame.
 
-#if defined(__GNUC__) && !defined(__clang__)
-// Where g++ 12 inlines one of our operators and not the other, it takes `free` for the wrong end of `new`.
-#pragma GCC diagnostic ignored "-Wmismatched-new-delete"
-#endif
-
-#include <malloc.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <map>
-#include <new>
 #include <utility>
 #include <vector>
 
 #include "bench.h"
 #include "support/bench_frames.h"
+#include "support/counted_new.h"
 #include "tassilo/base/contract.h"
 #include "tassilo/color/segment.h"
 
-namespace {
-
-std::int64_t allocations = 0, held_bytes = 0, peak_bytes = 0;
-
-void* counted(std::size_t bytes, std::size_t alignment) {
-  const std::size_t rounded = (std::max<std::size_t>(bytes, 1) + alignment - 1) / alignment * alignment;
-  void* const block = std::aligned_alloc(alignment, rounded);
-  if (block == nullptr) throw std::bad_alloc();
-  ++allocations;
-  held_bytes += static_cast<std::int64_t>(malloc_usable_size(block));
-  peak_bytes = std::max(peak_bytes, held_bytes);
-  return block;
-}
-void release(void* block) {
-  if (block != nullptr) held_bytes -= static_cast<std::int64_t>(malloc_usable_size(block));
-  std::free(block);
-}
-
-}  // namespace
-
-void* operator new(std::size_t bytes) { return counted(bytes, alignof(std::max_align_t)); }
-void* operator new(std::size_t bytes, std::align_val_t alignment) {
-  return counted(bytes, static_cast<std::size_t>(alignment));
-}
-void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
-  try {
-    return operator new(bytes);
-  } catch (const std::bad_alloc&) {
-    return nullptr;
-  }
-}
-void operator delete(void* block) noexcept { release(block); }
-void operator delete(void* block, std::size_t) noexcept { release(block); }
-void operator delete(void* block, std::align_val_t) noexcept { release(block); }
-void operator delete(void* block, std::size_t, std::align_val_t) noexcept { release(block); }
-
 namespace tassilo::bench {
 namespace {
+
+using test::allocations;
+using test::held_bytes;
+using test::peak_bytes;
 
 struct Memory {
   double runs = 0;               ///< Of all classes of a frame.
@@ -91,7 +51,7 @@ Memory measured_here(const test::BenchFrames& frames) {
       segmentation = segment(frame.view, frames.classifier, std::move(segmentation));
   };
   const std::int64_t before = held_bytes;
-  peak_bytes = held_bytes;
+  peak_bytes = before;
   pass();
   pass();  // blocks may still move to where they are needed most
   memory.held = static_cast<double>(held_bytes - before);

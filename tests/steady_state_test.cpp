@@ -1,23 +1,15 @@
 // Once they have seen what a recording shows, vision and contours allocate nothing more: every call of operator new is
 // counted.
 
-#if defined(__GNUC__) && !defined(__clang__)
-// Where g++ 12 inlines one of our operators and not the other, it takes `free` for the wrong end of `new`.
-#pragma GCC diagnostic ignored "-Wmismatched-new-delete"
-#endif
-
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
-#include <new>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "support/counted_new.h"
 #include "support/recording.h"
 #include "tassilo/color/segment.h"
 #include "tassilo/contour/boundary_contours.h"
@@ -25,37 +17,10 @@
 #include "tassilo/contour/sub_pixel_edges.h"
 #include "tassilo/region/skeleton.h"
 
-namespace {
-
-std::atomic<std::int64_t> allocations = 0;
-
-void* counted(std::size_t bytes, std::size_t alignment) {
-  ++allocations;
-  const std::size_t rounded = (std::max<std::size_t>(bytes, 1) + alignment - 1) / alignment * alignment;
-  if (void* block = std::aligned_alloc(alignment, rounded)) return block;
-  throw std::bad_alloc();
-}
-
-}  // namespace
-
-void* operator new(std::size_t bytes) { return counted(bytes, alignof(std::max_align_t)); }
-void* operator new(std::size_t bytes, std::align_val_t alignment) {
-  return counted(bytes, static_cast<std::size_t>(alignment));
-}
-void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
-  try {
-    return operator new(bytes);
-  } catch (const std::bad_alloc&) {
-    return nullptr;
-  }
-}
-void operator delete(void* block) noexcept { std::free(block); }
-void operator delete(void* block, std::size_t) noexcept { std::free(block); }
-void operator delete(void* block, std::align_val_t) noexcept { std::free(block); }
-void operator delete(void* block, std::size_t, std::align_val_t) noexcept { std::free(block); }
-
 namespace tassilo {
 namespace {
+
+using test::allocations;
 
 class SteadyState : public testing::TestWithParam<std::pair<const char*, const char*>> {};
 

@@ -6,7 +6,6 @@
 #include "tassilo/files/camera_file.h"
 #include "tassilo/files/colors_file.h"
 #include "tassilo/files/field_file.h"
-#include "tassilo/files/robot_file.h"
 
 namespace tassilo {
 namespace {
@@ -32,6 +31,10 @@ FieldModel named_field(const std::string& robot_file, const std::string& field) 
 }
 
 }  // namespace
+
+PoseGaussian gaussian_of(const StartPose& start) {
+  return pose_gaussian(start.x, start.y, start.theta, start.sigma_xy, start.sigma_theta);
+}
 
 RobotSetup read_robot_setup(const std::string& robot_file, const std::string& colors) {
   const RobotFile robot = robot_file.empty() ? RobotFile{} : read_robot(robot_file);
@@ -64,9 +67,7 @@ RobotSetup read_robot_setup(const std::string& robot_file, const std::string& co
   setup.vision.field = robot.field ? named_field(robot_file, *robot.field) : read_field("msl98");
   if (robot.field && is_field_path(*robot.field)) setup.read.push_back({"field file", *robot.field});
   setup.vision.options = vision_options(robot.vision);
-  if (robot.start_pose)
-    setup.vision.start_pose = pose_gaussian(robot.start_pose->x, robot.start_pose->y, robot.start_pose->theta,
-                                            robot.start_pose->sigma_xy, robot.start_pose->sigma_theta);
+  if (robot.start_pose) setup.vision.start_pose = gaussian_of(*robot.start_pose);
   return setup;
 }
 

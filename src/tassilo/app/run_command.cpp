@@ -2,6 +2,7 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <charconv>
@@ -33,8 +34,8 @@ namespace {
 struct RunArguments {
   std::string robot, source, odometry, output, overlay, label_maps, colors, start_pose;
   std::string format, size, range;
-  std::optional<RawFormat> raw;       ///< What `format`, `size`, `range` and `fps` say.
-  std::optional<PoseGaussian> start;  ///< What `start_pose` says.
+  std::optional<RawFormat> raw;    ///< What `format`, `size`, `range` and `fps` say.
+  std::optional<StartPose> start;  ///< What `start_pose` says.
   double fps = 0;
   int every = 1;
   int threads = 1;
@@ -89,27 +90,25 @@ std::optional<RawFormat> raw_format(const RunArguments& arguments) {
 }
 
 /// Throws CLI::ValidationError: what it refuses is wrong usage.
-std::optional<PoseGaussian> start_pose_from(const std::string& text) {
+std::optional<StartPose> start_pose_from(const std::string& text) {
   if (text.empty()) return std::nullopt;
-  std::array<double, 5> numbers{0, 0, 0, 0.1, 0.1};
+  StartPose pose;
+  const std::array values{&pose.x, &pose.y, &pose.theta, &pose.sigma_xy, &pose.sigma_theta};
   std::size_t count = 0;
-  for (std::size_t begin = 0; begin <= text.size() && count <= numbers.size(); ++count) {
+  bool good = true;
+  for (std::size_t begin = 0; good && begin <= text.size(); ++count) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
-    double value = 0;
+    double value = NAN;
     const auto [rest, error] = std::from_chars(text.data() + begin, text.data() + end, value);
-    if (count == numbers.size() || error != std::errc{} || rest != text.data() + end || !std::isfinite(value)) {
-      count = 0;
-      break;
-    }
-    numbers[count] = value;
+    good = count < values.size() && error == std::errc{} && rest == text.data() + end && std::isfinite(value);
+    if (good) *values[count] = value;
     begin = end + 1;
   }
-  const auto [x, y, theta, sigma_xy, sigma_theta] = numbers;
-  if (count < 3 || !(sigma_xy > 0) || !(sigma_theta > 0))
+  if (!good || count < 3 || !(pose.sigma_xy > 0) || !(pose.sigma_theta > 0))
     throw CLI::ValidationError(
         "--start-pose",
         "is " + text + ", must be X,Y,THETA or X,Y,THETA,SIGMA_XY,SIGMA_THETA in m and rad, sigmas > 0");
-  return pose_gaussian(x, y, theta, sigma_xy, sigma_theta);
+  return pose;
 }
 
 /// Throws Error when a file that is read would be overwritten.
@@ -240,7 +239,7 @@ std::optional<Odometry> load_odometry(const std::string& file) {
 int run_command(const RunArguments& arguments) {
   using Clock = std::chrono::steady_clock;
   RobotSetup setup = read_robot_setup(arguments.robot, arguments.colors);
-  if (arguments.start) setup.vision.start_pose = arguments.start;
+  if (arguments.start) setup.vision.start_pose = gaussian_of(*arguments.start);
   check_paths(arguments, setup.read);
   const Vision vision(setup.vision);
   const std::optional<Odometry> odometry = load_odometry(arguments.odometry);
