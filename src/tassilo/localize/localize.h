@@ -6,30 +6,15 @@
 #include "tassilo/localize/pose_belief.h"
 #include "tassilo/localize/pose_fit.h"
 #include "tassilo/scene/scene.h"
-#include "tassilo/timeline/odometry.h"
+#include "tassilo/timeline/robot_motion.h"
 
 namespace tassilo {
 
 struct LocalizeOptions {
-  /// Odometry: how far off it may be. One standard deviation.
-  double odometry_distance_sigma = 0.1;  ///< Of the distance driven: slip and a wrong wheel radius. [1], >= 0
-  double odometry_turn_sigma = 0.1;      ///< Of the angle turned. [1], >= 0
-  double odometry_drift_sigma = 0.01;    ///< Whatever it says, by time. [m/sqrt(s), rad/sqrt(s)], > 0
-  /// Without odometry: how fast a robot may be.
-  double speed_sigma = 1;        ///< [m/s], > 0
-  double turn_rate_sigma = 1.5;  ///< [rad/s], > 0
-  double certain = 0.95;         ///< Share of belief at which one place is the pose. 0.5 .. 1
-  int max_hypotheses = 12;       ///< >= 2
-  void check() const;            ///< Throws Error naming the first field out of range.
+  double certain = 0.95;    ///< Share of belief at which one place is the pose. 0.5 .. 1
+  int max_hypotheses = 12;  ///< >= 2
+  void check() const;       ///< Throws Error naming the first field out of range.
 };
-
-/// How the robot moved between two times, in its frame at the first, and how sure that is.
-struct RobotMotion {
-  double x = 0, y = 0, theta = 0;  ///< [m, rad]
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-};
-/// By odometry where it knows both times, else standing still with the uncertainty of a robot that may drive.
-RobotMotion robot_motion(const Odometry* odometry, double from, double to, const LocalizeOptions& options);
 
 /// A pose after a motion.
 PoseGaussian moved(const PoseGaussian& pose, const RobotMotion& motion);

@@ -92,15 +92,15 @@ constexpr Option kOptions[] = {
     real("free_space_max_range", "m", 0.1, 100, "free motion space is not asked for further away",
          [](V& o) -> double& { return o.free_space.max_range; }),
     real("odometry_distance_sigma", "1", 0, 1, "uncertainty of odometry, of the distance driven",
-         [](V& o) -> double& { return o.localize.odometry_distance_sigma; }),
+         [](V& o) -> double& { return o.motion.odometry_distance_sigma; }),
     real("odometry_turn_sigma", "1", 0, 1, "uncertainty of odometry, of the angle turned",
-         [](V& o) -> double& { return o.localize.odometry_turn_sigma; }),
+         [](V& o) -> double& { return o.motion.odometry_turn_sigma; }),
     real("odometry_drift_sigma", "m, rad", 0.0001, 10, "uncertainty of odometry after a second, however little it says",
-         [](V& o) -> double& { return o.localize.odometry_drift_sigma; }),
+         [](V& o) -> double& { return o.motion.odometry_drift_sigma; }),
     real("pose_speed_sigma", "m/s", 0.01, 100, "how fast a robot without odometry may drive",
-         [](V& o) -> double& { return o.localize.speed_sigma; }),
+         [](V& o) -> double& { return o.motion.speed_sigma; }),
     real("pose_turn_rate_sigma", "rad/s", 0.01, 100, "how fast a robot without odometry may turn",
-         [](V& o) -> double& { return o.localize.turn_rate_sigma; }),
+         [](V& o) -> double& { return o.motion.turn_rate_sigma; }),
     real("pose_certain", "1", 0.5, 0.9999, "share of the belief that one place must have to be the pose",
          [](V& o) -> double& { return o.localize.certain; }),
     whole("pose_max_hypotheses", "1", 2, 100, "places kept until goals or odometry decide",
@@ -132,6 +132,7 @@ void VisionOptions::check() const {
   robot.check();
   line.check();
   free_space.check();
+  motion.check();
   localize.check();
 }
 

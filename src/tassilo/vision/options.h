@@ -14,6 +14,7 @@
 #include "tassilo/freespace/free_space.h"
 #include "tassilo/localize/localize.h"
 #include "tassilo/surface/surface.h"
+#include "tassilo/timeline/robot_motion.h"
 
 namespace tassilo {
 
@@ -25,6 +26,7 @@ struct VisionOptions {
   RobotOptions robot;
   LineOptions line;
   FreeSpaceOptions free_space;
+  MotionOptions motion;
   LocalizeOptions localize;
   /// How well the mount is known: what a careful calibration leaves, plus how much the robot shakes and nods while
   /// driving.

@@ -102,7 +102,7 @@ Scene Vision::operator()(const Frame& frame, VisionWorkspace& workspace, const O
     if (!workspace.belief || frame.t < workspace.belief->t)
       workspace.belief = start_pose_ ? belief_in(*start_pose_, frame.t) : PoseBelief{};
     Localized localized = timed(scene, "localize", [&] {
-      const RobotMotion motion = robot_motion(odometry, workspace.belief->t, frame.t, options_.localize);
+      const RobotMotion motion = robot_motion(odometry, workspace.belief->t, frame.t, options_.motion);
       return localize(*target_, *workspace.belief, motion, {lines.marks, scene.goals, &*scene.free_space}, frame.t,
                       options_.localize);
     });
