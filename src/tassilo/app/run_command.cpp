@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "tassilo/app/boundary_steps.h"
 #include "tassilo/app/commands.h"
 #include "tassilo/app/robot_setup.h"
 #include "tassilo/app/run_summary.h"
@@ -32,7 +33,7 @@ namespace tassilo {
 namespace {
 
 struct RunArguments {
-  std::string robot, source, odometry, output, overlay, label_maps, colors, start_pose;
+  std::string robot, source, odometry, output, overlay, overlay_step, label_maps, colors, start_pose;
   std::string format, size, range;
   std::optional<RawFormat> raw;    ///< What `format`, `size`, `range` and `fps` say.
   std::optional<StartPose> start;  ///< What `start_pose` says.
@@ -192,6 +193,15 @@ class Sinks {
       OverlayOptions options;
       options.camera = optics != nullptr ? &optics->camera : nullptr;
       options.surface = &workspace.surface;
+      StepPicture step;
+      if (!arguments_.overlay_step.empty()) {
+        const auto* const name = std::ranges::find(kBoundarySteps, arguments_.overlay_step);
+        step.title = arguments_.overlay_step + ": nothing without a camera file";
+        if (workspace.boundary && optics != nullptr)
+          step = boundary_step(*workspace.boundary, static_cast<std::size_t>(name - kBoundarySteps.begin()),
+                               optics->camera);
+        options.step = &step;
+      }
       overlay_->write(draw_overlay(frame.view, frame.range, scene, options), scene.frame, scene.t);
     }
   }
@@ -272,6 +282,7 @@ int run_command(const RunArguments& arguments) {
 
   Sinks sinks(arguments);
   VisionWorkspace workspace;
+  workspace.watch_boundary = !arguments.overlay_step.empty();
   RunSummary summary;
   Progress progress(!arguments.quiet, source.info().frame_count);
   std::optional<Error> damage;
@@ -325,6 +336,10 @@ Command add_run(CLI::App& program) {
                       "X,Y,THETA[,SIGMA_XY,SIGMA_THETA] on the field, instead of the robot file's [m, rad]");
   command->add_option("-o,--output", arguments->output, "scenes as JSON Lines; - for standard output");
   command->add_option("--overlay", arguments->overlay, "annotated pictures: a .mkv or .mp4 video, or a folder of PNGs");
+  command
+      ->add_option("--overlay-step", arguments->overlay_step,
+                   "draw what this step of finding the boundary saw, instead of what is in the scene")
+      ->check(CLI::IsMember(std::vector<std::string>(kBoundarySteps.begin(), kBoundarySteps.end())));
   command->add_option("--label-maps", arguments->label_maps, "folder for color classes 0..8 as NNNN.png");
   command->add_option("--colors", arguments->colors, "color table, instead of the robot file's");
   command->add_option("--format", arguments->format, "raw frames: pixel format")
@@ -342,6 +357,8 @@ Command add_run(CLI::App& program) {
       ->capture_default_str();
   command->add_flag("-q,--quiet", arguments->quiet, "print nothing but errors");
   command->callback([arguments] {
+    if (!arguments->overlay_step.empty() && arguments->overlay.empty())
+      throw CLI::ValidationError("--overlay-step", "says what is drawn, --overlay is missing");
     arguments->raw = raw_format(*arguments);
     arguments->start = start_pose_from(arguments->start_pose);
   });

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
 
+#include "tassilo/base/contract.h"
 #include "tassilo/base/error.h"
 
 namespace tassilo {
@@ -163,6 +166,33 @@ void SkeletonContourOptions::check() const {
 SkeletonContours skeleton_contours(const Region& skeleton, const SkeletonContourOptions& options) {
   options.check();
   return Tracer(skeleton, options).contours();
+}
+
+Contour centered(Contour contour, const Region& region, int reach) {
+  expects(reach >= 1, "centered: a reach of at least 1");
+  // Twice the middle and the width of the stretch through a pixel; nothing when it goes on beyond the reach.
+  struct Stretch {
+    double middle = 0;
+    int width = 0;
+  };
+  const auto stretch = [&](int from, auto inside) -> std::optional<Stretch> {
+    int low = from, high = from;
+    while (from - low <= reach && inside(low - 1)) --low;
+    while (high - from <= reach && inside(high + 1)) ++high;
+    if (from - low > reach || high - from > reach) return std::nullopt;
+    return Stretch{0.5 * (low + high), high - low};
+  };
+  for (PixelPoint& point : contour.points) {
+    const int column = static_cast<int>(std::lround(point.x)), row = static_cast<int>(std::lround(point.y));
+    if (!contains(region, column, row)) continue;
+    const auto down = stretch(row, [&](int r) { return contains(region, column, r); });
+    const auto along = stretch(column, [&](int c) { return contains(region, c, row); });
+    if (down && (!along || down->width <= along->width))
+      point.y = down->middle;
+    else if (along)
+      point.x = along->middle;
+  }
+  return contour;
 }
 
 }  // namespace tassilo

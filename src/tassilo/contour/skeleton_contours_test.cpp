@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <random>
@@ -13,6 +14,7 @@
 #include "tassilo/region/algebra.h"
 #include "tassilo/region/components.h"
 #include "tassilo/region/morphology.h"
+#include "tassilo/region/raster.h"
 #include "tassilo/region/skeleton.h"
 
 namespace tassilo {
@@ -112,6 +114,42 @@ TEST(SkeletonContours, ShortOnesAreLeftOutOnDemand) {
   EXPECT_LT(longer.contours.size(), all.contours.size());
   EXPECT_EQ(longer.junctions.size(), all.junctions.size());
   EXPECT_THROW(skeleton_contours(region, {.min_points = 0}), Error);
+}
+
+// A slanted band of any width: its skeleton's points come to lie on the middle line, without leaning to one side.
+TEST(Centered, LiesInTheMiddleOfABand) {
+  for (const double width : {4., 5., 6., 7., 8.5}) {
+    SCOPED_TRACE(width);
+    const PixelPoint p{20, 30}, q{140, 52};
+    const PixelPoint along = (1 / distance(p, q)) * (q - p), across{-along.y, along.x};
+    const PixelPoint half = width / 2 * across;
+    const std::array corners{p - half, q - half, q + half, p + half};
+    const Region band = region_from_polygon(corners, {0, 0, 200, 100});
+    double sum = 0, raw = 0;
+    int count = 0;
+    for (const SkeletonContour& one : skeleton_contours(skeleton(band)).contours) {
+      const Contour middle = centered(one.contour, band, 12);
+      for (std::size_t k = 0; k < middle.points.size(); ++k) {
+        const double place = dot(middle.points[k] - p, along);
+        if (place < width || place > distance(p, q) - width) continue;  // the ends have corners
+        EXPECT_LT(std::abs(dot(middle.points[k] - p, across)), 0.75);
+        sum += dot(middle.points[k] - p, across);
+        raw += dot(one.contour.points[k] - p, across);
+        ++count;
+      }
+    }
+    ASSERT_GT(count, 50);
+    EXPECT_LT(std::abs(sum / count), 0.05) << "as the skeleton: " << raw / count;
+  }
+}
+
+TEST(Centered, LeavesWhatIsOutsideOrFarFromBorders) {
+  const Region block = Region::from_box({0, 0, 60, 60});
+  const Contour contour{.points = {{30, 30}, {70, 70}, {2, 30}}};
+  const Contour result = centered(contour, block, 5);
+  EXPECT_EQ(result.points[0], contour.points[0]);
+  EXPECT_EQ(result.points[1], contour.points[1]);
+  EXPECT_EQ(result.points[2], contour.points[2]);
 }
 
 }  // namespace

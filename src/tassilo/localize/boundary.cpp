@@ -149,8 +149,9 @@ Boundary find_boundary(const FrameView& frame, const Region& wall, const Region&
   const Region element = disc(options.reach_px);
   boundary.region = clipped(intersection(dilation(wall, element), dilation(field, element)), image);
   if (options.method == BoundaryMethod::skeleton) {
+    const int widest = static_cast<int>(std::ceil(3 * options.reach_px));
     for (SkeletonContour& one : skeleton_contours(skeleton(boundary.region), {.min_points = 5}).contours)
-      boundary.contours.push_back(std::move(one.contour));
+      boundary.contours.push_back(centered(std::move(one.contour), boundary.region, widest));
   } else {
     boundary.contours = sub_pixel_edges(frame, boundary.region);
   }
@@ -179,10 +180,13 @@ Boundary find_boundary(const FrameView& frame, const Region& wall, const Region&
       return camera.floor_along(camera.robot_from_optical({ideal.x / focal, ideal.y / focal, 1}));
     };
     const auto p = on_floor(line.p), q = on_floor(line.q);
-    if (p && q) boundary.segments.push_back({*p, *q, line.residual_px, line.points, line.image_p, line.image_q});
+    if (p && q) boundary.segments.push_back({*p, *q, line.residual_px, 0, line.points, line.image_p, line.image_q});
   }
   join_all(boundary.segments,
            {radians(options.floor_join_angle_deg), options.floor_join_offset, options.floor_join_gap});
+  // What all points of a line share: two thresholds of color to both sides of the rim, or blur and lens.
+  const double shared_px = options.method == BoundaryMethod::skeleton ? 1 : 0.5;
+  for (BoundarySegment& segment : boundary.segments) segment.sigma_px = std::hypot(segment.residual_px, shared_px);
   sort_stably(boundary.segments, std::greater<>{}, [](const BoundarySegment& one) { return distance(one.p, one.q); });
   return boundary;
 }

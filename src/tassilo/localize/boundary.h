@@ -45,6 +45,7 @@ struct BoundaryPiece {
 struct BoundarySegment {
   FloorPoint p, q;
   double residual_px = 0;
+  double sigma_px = 1;  ///< How well its ends are known across it. [px]
   int points = 0;
   PixelPoint image_p, image_q;
 };

@@ -27,35 +27,36 @@ std::array<Wall, 4> walls_of(const FieldExtent& extent) {
       {{"x_plus", 0, x.high}, {"y_plus", kPi / 2, y.high}, {"x_minus", kPi, -x.low}, {"y_minus", -kPi / 2, -y.low}}};
 }
 
-/// A segment as a line of the robot's floor: x cos(normal) + y sin(normal) = distance, the normal away from the robot.
+/// A segment as a line of the robot's floor: through `middle`, the normal away from the robot.
 struct FloorLine {
-  double normal = 0, distance = 0;  ///< [rad, m]
-  double length = 0;                ///< [m]
-  double sigma_normal = 0, sigma_distance = 0;
+  FloorPoint middle;
+  double normal = 0;  ///< [rad]
+  double length = 0;  ///< [m]
+  /// Of the direction, and of the middle across the line: they do not depend on each other.
+  double sigma_normal = 0, sigma_middle = 0;
   double column = 0;  ///< Of its middle in the image. [px]
+
+  double distance() const { return dot(middle, {std::cos(normal), std::sin(normal)}); }  ///< Of the robot. [m]
 };
 
 FloorLine floor_line(const BoundarySegment& segment, const MountedCamera& camera) {
   FloorLine line;
   const FloorPoint along = segment.q - segment.p;
   line.length = norm(along);
+  line.middle = 0.5 * (segment.p + segment.q);
   FloorPoint n{-along.y / line.length, along.x / line.length};
   if (dot(n, segment.p) < 0) n = -1.0 * n;
   line.normal = bearing(n);
-  line.distance = dot(n, segment.p);
   line.column = 0.5 * (segment.image_p.x + segment.image_q.x);
   // How far an end moves across the line with a pixel's error there.
-  const double residual = std::hypot(segment.residual_px, 1.0);
   const auto sigma_at = [&](PixelPoint pixel, FloorPoint at) {
     const auto below = camera.floor_point({pixel.x, pixel.y + 1});
     const double per_px = below ? distance(*below, at) : 0.1 * norm(at);
-    return std::max(residual * per_px, 1e-3);
+    return std::max(segment.sigma_px * per_px, 1e-3);
   };
-  const double sp = sigma_at(segment.image_p, segment.p), sq = sigma_at(segment.image_q, segment.q);
-  line.sigma_normal = std::hypot(sp, sq) / line.length;
-  // At the foot of the perpendicular, which may lie beyond the ends.
-  const double t = -dot(segment.p, along) / (line.length * line.length);
-  line.sigma_distance = std::hypot((1 - t) * sp, t * sq);
+  const double sigma = std::hypot(sigma_at(segment.image_p, segment.p), sigma_at(segment.image_q, segment.q));
+  line.sigma_normal = sigma / line.length;
+  line.sigma_middle = sigma / 2;
   return line;
 }
 
@@ -64,11 +65,28 @@ double off_orthogonal(double normal_a, double normal_b) {
   return turn > 0 ? turn - kPi / 2 : turn + kPi / 2;
 }
 
-bool touches(const BoundarySegment& segment, const Region& dilated_goal) {
+/// How far from a goal's color its end line may begin: a white post stands between, and both rims are blurred. [px]
+double goal_reach(const Region& goal, const MountedCamera& camera) {
+  constexpr double blurred = 6, most = 60;  // [px]
+  constexpr double post = 0.15;             // [m]
+  const PixelBox box = bounding_box(goal);
+  const auto foot = camera.floor_point({0.5 * (box.x0 + box.x1 - 1), box.y1 - 1.0});
+  if (!foot) return blurred;
+  return std::min(blurred + post * camera.model().fx / std::max(norm(*foot), 0.1), most);
+}
+
+/// Does a segment, or its continuation by a piece that may be hidden or too short to be a line, come near a goal?
+bool touches(const BoundarySegment& segment, const Region& dilated_goal, const MountedCamera& camera) {
   constexpr int steps = 64;
+  constexpr double hidden = 0.5;  // [m] a robot's width
+  const FloorPoint way = segment.q - segment.p, more = (hidden / norm(way)) * way;
+  const FloorPoint from = segment.p - more, to = segment.q + more;
   for (int k = 0; k <= steps; ++k) {
-    const PixelPoint p = segment.image_p + (static_cast<double>(k) / steps) * (segment.image_q - segment.image_p);
-    if (contains(dilated_goal, static_cast<int>(std::lround(p.x)), static_cast<int>(std::lround(p.y)))) return true;
+    const FloorPoint at = from + static_cast<double>(k) / steps * (to - from);
+    const auto pixel = camera.project({at.x, at.y, 0});
+    if (pixel &&
+        contains(dilated_goal, static_cast<int>(std::lround(pixel->x)), static_cast<int>(std::lround(pixel->y))))
+      return true;
   }
   return false;
 }
@@ -84,31 +102,53 @@ std::optional<std::size_t> across(const RecycledVector<FloorLine>& lines, std::s
   return best;
 }
 
-/// Kalman update by one line's orientation and distance.
-void update(PoseGaussian& pose, const FloorLine& line, const Wall& wall) {
-  const double c = std::cos(wall.normal), s = std::sin(wall.normal);
-  // theta = wall.normal - line.normal; x c + y s = wall.distance - line.distance.
-  Eigen::Matrix<double, 2, 3> by_pose;
-  by_pose << 0, 0, 1, c, s, 0;
-  const Eigen::Vector2d off(wrap_angle(wall.normal - line.normal - pose.theta),
-                            wall.distance - line.distance - (c * pose.x + s * pose.y));
-  const Eigen::Matrix2d noise =
-      Eigen::Vector2d(line.sigma_normal * line.sigma_normal, line.sigma_distance * line.sigma_distance).asDiagonal();
-  const Eigen::Matrix<double, 3, 2> gain =
-      pose.covariance * by_pose.transpose() * (by_pose * pose.covariance * by_pose.transpose() + noise).inverse();
-  const Eigen::Vector3d step = gain * off;
+/// One number measured, as a function of the pose near which it was looked at.
+struct Measurement {
+  Eigen::RowVector3d by_pose;
+  double off = 0;    ///< Measured less expected.
+  double sigma = 0;  ///< Of the measured one.
+};
+/// theta = wall.normal - line.normal.
+Measurement direction_of(const FloorLine& line, const Wall& wall, const PoseGaussian& pose) {
+  return {{0, 0, 1}, wrap_angle(wall.normal - line.normal - pose.theta), line.sigma_normal};
+}
+/// The middle lies on the wall.
+Measurement distance_of(const FloorLine& line, const Wall& wall, const PoseGaussian& pose) {
+  const FieldPoint n{std::cos(wall.normal), std::sin(wall.normal)};
+  const double c = std::cos(pose.theta), s = std::sin(pose.theta);
+  const FieldPoint turned{c * line.middle.x - s * line.middle.y, s * line.middle.x + c * line.middle.y};
+  return {{n.x, n.y, -n.x * turned.y + n.y * turned.x},
+          wall.distance - dot(n, FieldPoint{pose.x, pose.y} + turned),
+          line.sigma_middle};
+}
+
+/// Kalman update; false, and nothing changed, where the measurement is too far from what is expected.
+bool update(PoseGaussian& pose, const Measurement& measured) {
+  constexpr double most_sigmas = 3.3;  // one in a thousand
+  const Eigen::Vector3d spread = pose.covariance * measured.by_pose.transpose();
+  const double noise = measured.sigma * measured.sigma, expected = measured.by_pose.dot(spread) + noise;
+  if (measured.off * measured.off > most_sigmas * most_sigmas * expected) return false;
+  const Eigen::Vector3d gain = spread / expected, step = gain * measured.off;
   pose.x += step[0];
   pose.y += step[1];
   pose.theta = wrap_angle(pose.theta + step[2]);
-  const Eigen::Matrix3d left = Eigen::Matrix3d::Identity() - gain * by_pose;
+  const Eigen::Matrix3d left = Eigen::Matrix3d::Identity() - gain * measured.by_pose;
   pose.covariance = left * pose.covariance * left.transpose() + gain * noise * gain.transpose();
+  return true;
+}
+
+/// A pose of which only the orientation is known, and that roughly.
+PoseGaussian hardly_known(const PoseGaussian& pose) {
+  PoseGaussian unknown = pose;
+  unknown.covariance = Eigen::Vector3d(100, 100, 10).asDiagonal();
+  return unknown;
 }
 
 }  // namespace
 
-BoundaryFix pose_by_boundary(const FieldTarget& target, std::span<const BoundarySegment> segments,
-                             std::span<const GoalInImage> goals, const std::optional<PoseGaussian>& predicted,
-                             const MountedCamera& camera) {
+BoundaryFix pose_by_boundary(const FieldTarget& target, const BoundaryObservation& seen,
+                             const std::optional<PoseGaussian>& predicted) {
+  const auto& [segments, goals, camera] = seen;
   BoundaryFix fix;
   fix.pose = predicted;
   RecycledVector<FloorLine> lines;
@@ -127,11 +167,10 @@ BoundaryFix pose_by_boundary(const FieldTarget& target, std::span<const Boundary
   for (const GoalInImage& goal : goals) {
     const FieldModel::Goal* model = goal_of(target, goal.color);
     if (model == nullptr || goal.region.empty()) continue;
-    constexpr double reach = 6;  // [px] the rims of goal and wall, both blurred
-    const Region near = dilation(goal.region, disc(reach));
+    const Region near = dilation(goal.region, disc(goal_reach(goal.region, camera)));
     std::optional<std::size_t> end;
     for (std::size_t k = 0; k < lines.size(); ++k)
-      if (touches(segments[k], near) && (!end || lines[k].length > lines[*end].length)) end = k;
+      if (touches(segments[k], near, camera) && (!end || lines[k].length > lines[*end].length)) end = k;
     if (!end) continue;
     const bool plus = model->side == GoalSide::plus_x;
     pairs.push_back({*end, plus ? 0u : 2u});
@@ -163,17 +202,20 @@ BoundaryFix pose_by_boundary(const FieldTarget& target, std::span<const Boundary
   }
   // Parallel walls cannot both be meant, and a line of the other handedness is none of the field's.
   if (pairs.size() == 2) {
-    const double seen = wrap_angle(lines[pairs[1].line].normal - lines[pairs[0].line].normal);
+    const double turn_seen = wrap_angle(lines[pairs[1].line].normal - lines[pairs[0].line].normal);
     const double meant = wrap_angle(walls[pairs[1].wall].normal - walls[pairs[0].wall].normal);
-    if (std::abs(wrap_angle(seen - meant)) > kPi / 4) {
+    if (std::abs(wrap_angle(turn_seen - meant)) > kPi / 4) {
       pairs.pop_back();
-      fix.why = "the second line turns the wrong way; ";
+      fix.why = "the second line turns the wrong way";
     }
   }
   if (pairs.size() == 2) {
     const double off = off_orthogonal(lines[pairs[0].line].normal, lines[pairs[1].line].normal);
-    lines[pairs[0].line].normal += off / 2;
-    lines[pairs[1].line].normal -= off / 2;
+    // The one whose direction is known less turns more.
+    FloorLine &a = lines[pairs[0].line], &b = lines[pairs[1].line];
+    const double of_a = a.sigma_normal * a.sigma_normal, of_b = b.sigma_normal * b.sigma_normal;
+    a.normal += off * of_a / (of_a + of_b);
+    b.normal -= off * of_b / (of_a + of_b);
   }
 
   if (!predicted && pairs.size() < 2) {
@@ -183,24 +225,58 @@ BoundaryFix pose_by_boundary(const FieldTarget& target, std::span<const Boundary
   // With nothing known before, the lines alone: a prediction that says nothing.
   PoseGaussian pose = predicted
                           ? *predicted
-                          : PoseGaussian{0, 0, wrap_angle(walls[pairs[0].wall].normal - lines[pairs[0].line].normal),
-                                         Eigen::Vector3d(100, 100, 10).asDiagonal()};
+                          : hardly_known({0, 0, wrap_angle(walls[pairs[0].wall].normal - lines[pairs[0].line].normal)});
   // A line that lies where the field has none is refused.
   for (const auto& [line, wall] : pairs) {
     constexpr double margin = 0.3;  // [m]
-    if (lines[line].distance <= walls[wall].distance + walls[(wall + 2) % 4].distance + margin) continue;
+    if (lines[line].distance() <= walls[wall].distance + walls[(wall + 2) % 4].distance + margin) continue;
     fix.why.append(walls[wall].name).append(" would be farther than the field is wide");
     return fix;
   }
   for (const auto& [line, wall] : pairs) {
-    update(pose, lines[line], walls[wall]);
+    // The direction first: how far off the middle is depends on it.
+    PoseGaussian updated = pose;
+    if (!update(updated, direction_of(lines[line], walls[wall], updated)) ||
+        !update(updated, distance_of(lines[line], walls[wall], updated))) {
+      ++fix.refused;
+      fix.why.append(fix.why.empty() ? "" : ", ").append(walls[wall].name).append(" is not where it was expected");
+      continue;
+    }
+    pose = updated;
     fix.matches.push_back({line, walls[wall].name});
+    fix.why.append(fix.why.empty() ? "" : ", ").append(walls[wall].name);
   }
+  if (fix.matches.empty()) return fix;
   fix.pose = pose;
-  fix.kind = pairs.size() == 2 ? PoseKind::two_lines : PoseKind::one_line;
-  fix.why.append(walls[pairs[0].wall].name);
-  if (pairs.size() == 2) fix.why.append(" and ").append(walls[pairs[1].wall].name);
+  fix.kind = fix.matches.size() == 2 ? PoseKind::two_lines : PoseKind::one_line;
   return fix;
+}
+
+Localized localize_by_boundary(const FieldTarget& target, const PoseBelief& before, const RobotMotion& motion,
+                               const BoundaryObservation& seen, double t) {
+  constexpr int enough_doubts = 3;
+  constexpr double certain = 0.95;
+  Localized result;
+  std::optional<PoseGaussian> predicted;
+  if (before.told && share_of_best(before) >= certain) predicted = moved(before.hypotheses.front().pose, motion);
+  const bool doubtful = before.doubts >= enough_doubts;
+  BoundaryFix fix =
+      pose_by_boundary(target, seen, predicted && doubtful ? std::optional(hardly_known(*predicted)) : predicted);
+  if (fix.matches.empty()) fix.pose = predicted;
+
+  PoseBelief& belief = result.belief;
+  belief.t = t;
+  belief.fixed_at = fix.matches.empty() ? before.fixed_at : t;
+  belief.doubts = fix.refused > 0 ? before.doubts + 1 : fix.matches.empty() ? before.doubts : 0;
+  result.why = std::move(fix.why);
+  if (!fix.pose) {
+    belief.hypotheses = before.hypotheses;
+    return result;
+  }
+  belief.told = true;
+  belief.hypotheses.push_back({*fix.pose, 0});
+  result.pose = told_pose(*fix.pose, fix.kind, t - belief.fixed_at);
+  return result;
 }
 
 }  // namespace tassilo

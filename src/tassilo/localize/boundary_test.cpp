@@ -163,10 +163,10 @@ class PoseByBoundary : public testing::Test {
 TEST_F(PoseByBoundary, AGoalItsEndLineAndASideLineNeedNoPrior) {
   const std::vector<BoundarySegment> segments{side, end};
   const std::vector<GoalInImage> goals{{GoalColor::blue, goal_beside(truth, 4.11, -0.75, 0.75)}};
-  const BoundaryFix fix = pose_by_boundary(target, segments, goals, {}, camera);
+  const BoundaryFix fix = pose_by_boundary(target, {segments, goals, camera}, {});
   ASSERT_TRUE(fix.pose);
   EXPECT_EQ(fix.kind, PoseKind::two_lines);
-  EXPECT_EQ(fix.why, "x_plus and y_plus");
+  EXPECT_EQ(fix.why, "x_plus, y_plus");
   expect_near(*fix.pose, truth, 0.01, 0.01);
 }
 
@@ -174,19 +174,19 @@ TEST_F(PoseByBoundary, WithoutAGoalTheOrientationDecidesUpToFortyFiveDegrees) {
   const std::vector<BoundarySegment> segments{end, side};
   for (const double off : {-40., -20., 20., 40.}) {
     const PoseGaussian before = pose_gaussian(1.4, 0.3, truth.theta() + radians(off), 0.3, radians(60));
-    const BoundaryFix fix = pose_by_boundary(target, segments, {}, before, camera);
+    const BoundaryFix fix = pose_by_boundary(target, {segments, {}, camera}, before);
     EXPECT_EQ(fix.kind, PoseKind::two_lines);
     expect_near(*fix.pose, truth, 0.05, 0.03);
   }
   const PoseGaussian turned = pose_gaussian(1.4, 0.3, truth.theta() + radians(50), 0.3, radians(60));
-  const BoundaryFix wrong = pose_by_boundary(target, segments, {}, turned, camera);
+  const BoundaryFix wrong = pose_by_boundary(target, {segments, {}, camera}, turned);
   EXPECT_GT(std::abs(wrap_angle(wrong.pose->theta - truth.theta())), radians(80)) << "a quarter turn off, as told";
 }
 
 TEST_F(PoseByBoundary, OneLineTellsOrientationAndDistance) {
   const std::vector<BoundarySegment> segments{end};
   const PoseGaussian before = pose_gaussian(1.2, 0.5, truth.theta() + 0.2, 0.4, 0.3);
-  const BoundaryFix fix = pose_by_boundary(target, segments, {}, before, camera);
+  const BoundaryFix fix = pose_by_boundary(target, {segments, {}, camera}, before);
   EXPECT_EQ(fix.kind, PoseKind::one_line);
   EXPECT_NEAR(fix.pose->x, truth.x, 0.06);
   EXPECT_NEAR(fix.pose->theta, truth.theta(), 0.03);
@@ -197,15 +197,15 @@ TEST_F(PoseByBoundary, OneLineTellsOrientationAndDistance) {
 
 TEST_F(PoseByBoundary, NothingSeenLeavesThePrediction) {
   const PoseGaussian before = pose_gaussian(1.2, 0.5, 0.2, 0.4, 0.3);
-  const BoundaryFix fix = pose_by_boundary(target, {}, {}, before, camera);
+  const BoundaryFix fix = pose_by_boundary(target, {{}, {}, camera}, before);
   EXPECT_EQ(fix.kind, PoseKind::predicted);
   EXPECT_EQ(fix.pose->x, 1.2);
-  EXPECT_FALSE(pose_by_boundary(target, {}, {}, {}, camera).pose);
+  EXPECT_FALSE(pose_by_boundary(target, {{}, {}, camera}, {}).pose);
 }
 
 TEST_F(PoseByBoundary, WithoutGoalOrPriorNothingIsGuessed) {
   const std::vector<BoundarySegment> segments{end, side};
-  const BoundaryFix fix = pose_by_boundary(target, segments, {}, {}, camera);
+  const BoundaryFix fix = pose_by_boundary(target, {segments, {}, camera}, {});
   EXPECT_FALSE(fix.pose);
   EXPECT_FALSE(fix.why.empty());
 }
@@ -216,9 +216,109 @@ TEST_F(PoseByBoundary, ALineFartherThanTheFieldIsWideIsRefused) {
   banner.q = banner.q + 4.0 * FloorPoint{std::sin(truth.theta()), std::cos(truth.theta())};
   const PoseGaussian before = pose_gaussian(1.5, 0.2, 0.25, 0.2, 0.1);
   const std::vector<BoundarySegment> segments{banner};
-  const BoundaryFix fix = pose_by_boundary(target, segments, {}, before, camera);
+  const BoundaryFix fix = pose_by_boundary(target, {segments, {}, camera}, before);
   EXPECT_EQ(fix.kind, PoseKind::predicted);
   EXPECT_NE(fix.why.find("farther"), RecycledString::npos) << fix.why;
+}
+
+TEST_F(PoseByBoundary, TheSideLineIsLeftOrRightAsItLiesBesideTheGoal) {
+  for (const bool plus : {true, false})
+    for (const bool left : {true, false}) {
+      SCOPED_TRACE(testing::Message() << (plus ? "blue" : "yellow") << (left ? " left" : " right"));
+      const double x = plus ? 4.11 : -4.11;
+      const double y = (left == plus ? 1 : -1) * 2.2875;
+      const FieldFromRobot pose = make_pose2<FieldFrame, RobotFrame>(
+          plus ? 1.5 : -1.5, 0.1 * y, (plus ? 0 : std::numbers::pi) + (left ? 0.25 : -0.25));
+      const std::vector<BoundarySegment> segments{segment({0.7 * x, y}, {0.97 * x, y}, pose),
+                                                  segment({x, 0.35 * y}, {x, 0.9 * y}, pose)};
+      const std::vector<GoalInImage> goals{
+          {plus ? GoalColor::blue : GoalColor::yellow, goal_beside(pose, x, -0.75, 0.75)}};
+      const BoundaryFix fix = pose_by_boundary(target, {segments, goals, camera}, {});
+      ASSERT_TRUE(fix.pose) << fix.why;
+      EXPECT_EQ(fix.kind, PoseKind::two_lines);
+      expect_near(*fix.pose, pose, 0.02, 0.02);
+    }
+}
+
+TEST_F(PoseByBoundary, ALineApartFromTheGoalIsNotItsEndLine) {
+  const std::vector<BoundarySegment> segments{side};
+  const std::vector<GoalInImage> goals{{GoalColor::blue, goal_beside(truth, 4.11, -0.75, 0.2)}};
+  const BoundaryFix fix = pose_by_boundary(target, {segments, goals, camera}, {});
+  EXPECT_FALSE(fix.pose);
+  const BoundaryFix known =
+      pose_by_boundary(target, {segments, goals, camera}, pose_gaussian(truth.x, truth.y, truth.theta(), 0.2, 0.1));
+  ASSERT_EQ(known.matches.size(), 1u);
+  EXPECT_EQ(known.matches[0].wall, "y_plus");
+}
+
+// A pair that is not quite orthogonal: the line that is known worse gives way.
+TEST_F(PoseByBoundary, APairIsMadeOrthogonal) {
+  const auto swung = [&](BoundarySegment one, double angle) {
+    const FloorPoint middle = 0.5 * (one.p + one.q), half = 0.5 * (one.q - one.p);
+    const FloorPoint turned{std::cos(angle) * half.x - std::sin(angle) * half.y,
+                            std::sin(angle) * half.x + std::cos(angle) * half.y};
+    one.p = middle - turned;
+    one.q = middle + turned;
+    return one;
+  };
+  BoundarySegment vague = swung(end, radians(10));
+  vague.sigma_px = 20 * side.sigma_px;
+  const std::vector<BoundarySegment> segments{vague, side};
+  const BoundaryFix fix =
+      pose_by_boundary(target, {segments, {}, camera}, pose_gaussian(truth.x, truth.y, truth.theta(), 0.5, 0.5));
+  EXPECT_EQ(fix.kind, PoseKind::two_lines);
+  EXPECT_LT(std::abs(wrap_angle(fix.pose->theta - truth.theta())), radians(1));
+
+  const std::vector<BoundarySegment> crooked{swung(end, radians(25)), side};
+  const BoundaryFix one =
+      pose_by_boundary(target, {crooked, {}, camera}, pose_gaussian(truth.x, truth.y, truth.theta(), 0.5, 0.5));
+  EXPECT_EQ(one.kind, PoseKind::one_line) << "beyond 20 degrees they are no pair";
+}
+
+TEST_F(PoseByBoundary, ALineThatContradictsIsRefusedAndThenBelieved) {
+  const FieldFromRobot carried = make_pose2<FieldFrame, RobotFrame>(-0.5, 0.2, 0.25);
+  const std::vector<BoundarySegment> segments{end, side};
+  const BoundaryObservation seen{segments, {}, camera};
+  PoseBelief belief = belief_in(pose_gaussian(carried.x, carried.y, carried.theta(), 0.05, 0.02), 0);
+  RobotMotion still;
+  still.covariance = Eigen::Vector3d(1e-4, 1e-4, 1e-4).asDiagonal();
+  int refused = 0;
+  for (int frame = 1; frame <= 6; ++frame) {
+    const Localized localized = localize_by_boundary(target, belief, still, seen, 0.1 * frame);
+    ASSERT_TRUE(localized.pose);
+    if (localized.why.find("not where it was expected") != RecycledString::npos) ++refused;
+    belief = localized.belief;
+  }
+  EXPECT_EQ(refused, 3);
+  expect_near(belief.hypotheses.front().pose, truth, 0.02, 0.02);
+  EXPECT_EQ(belief.doubts, 0);
+}
+
+TEST_F(PoseByBoundary, CovarianceGrowsWithOdometryAndShrinksWithLines) {
+  RobotMotion driven;
+  driven.x = 0.1;
+  driven.covariance = Eigen::Vector3d(1e-3, 1e-3, 1e-3).asDiagonal();
+  PoseBelief belief = belief_in(pose_gaussian(1.4, 0.2, 0.25, 0.05, 0.05), 0);
+  const Localized blind = localize_by_boundary(target, belief, driven, {{}, {}, camera}, 0.5);
+  ASSERT_TRUE(blind.pose);
+  EXPECT_EQ(blind.pose->kind, PoseKind::predicted);
+  EXPECT_DOUBLE_EQ(blind.pose->age, 0.5);
+  EXPECT_GT(blind.pose->covariance[0], 0.05 * 0.05);
+  const std::vector<BoundarySegment> segments{end};
+  const Localized by_one = localize_by_boundary(target, belief, driven, {segments, {}, camera}, 0.5);
+  EXPECT_EQ(by_one.pose->kind, PoseKind::one_line);
+  EXPECT_EQ(by_one.pose->age, 0);
+  EXPECT_LT(by_one.pose->covariance[0], blind.pose->covariance[0]) << "across the line";
+  EXPECT_NEAR(by_one.pose->covariance[4], blind.pose->covariance[4], 1e-3) << "along it";
+}
+
+// After a change from the model: what was undecided there is not known here.
+TEST_F(PoseByBoundary, AnUndecidedBeliefIsNoPrediction) {
+  PoseBelief belief = belief_in(pose_gaussian(1.5, 0.2, 0.25, 0.05, 0.05), 0);
+  belief.hypotheses.push_back({pose_gaussian(-1.5, -0.2, 0.25 - std::numbers::pi, 0.05, 0.05), 0});
+  const Localized localized = localize_by_boundary(target, belief, {}, {{}, {}, camera}, 0.1);
+  EXPECT_FALSE(localized.pose);
+  EXPECT_EQ(localized.belief.hypotheses.size(), 2u) << "but is kept for who knows what to do with it";
 }
 
 }  // namespace

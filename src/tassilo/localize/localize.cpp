@@ -78,6 +78,18 @@ PoseGaussian moved(const PoseGaussian& pose, const RobotMotion& motion) {
   return result;
 }
 
+PoseSeen told_pose(const PoseGaussian& pose, PoseKind kind, double age) {
+  PoseSeen told;
+  told.x = pose.x;
+  told.y = pose.y;
+  told.theta = pose.theta;
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) told.covariance[static_cast<std::size_t>(3 * r + c)] = pose.covariance(r, c);
+  told.kind = kind;
+  told.age = age;
+  return told;
+}
+
 PoseBelief belief_in(const PoseGaussian& pose, double t) {
   PoseBelief belief;
   belief.t = t;
@@ -138,16 +150,9 @@ Localized localize(const FieldTarget& target, const PoseBelief& before, const Ro
     result.why.append(std::to_string(belief.hypotheses.size())).append(" places explain what is seen");
     return result;
   }
-  const PoseGaussian& pose = belief.hypotheses.front().pose;
-  PoseSeen told;
-  told.x = pose.x;
-  told.y = pose.y;
-  told.theta = pose.theta;
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 3; ++c) told.covariance[static_cast<std::size_t>(3 * r + c)] = pose.covariance(r, c);
-  told.kind = tied ? PoseKind::model : PoseKind::predicted;
+  PoseSeen told =
+      told_pose(belief.hypotheses.front().pose, tied ? PoseKind::model : PoseKind::predicted, t - belief.fixed_at);
   told.mirror = shares.best < options.certain;
-  told.age = t - belief.fixed_at;
   result.pose = told;
   belief.told = true;
   result.why.append(std::to_string(best->lines_explained)).append(" of ").append(std::to_string(best->lines_seen));

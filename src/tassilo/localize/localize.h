@@ -39,6 +39,9 @@ struct Localized {
 Localized localize(const FieldTarget& target, const PoseBelief& before, const RobotMotion& motion,
                    const PoseObservation& seen, double t, const LocalizeOptions& options);
 
+/// A pose as the scene has it, without mirror.
+PoseSeen told_pose(const PoseGaussian& pose, PoseKind kind, double age);
+
 /// A belief in one pose, as a start pose gives it.
 PoseBelief belief_in(const PoseGaussian& pose, double t);
 

@@ -45,4 +45,11 @@ struct PoseBelief {
   int doubts = 0;       ///< Frames in a row, or nearly so, that the best one did not explain.
 };
 
+/// Share of the belief that the most likely place holds, 0 while there is none.
+inline double share_of_best(const PoseBelief& belief) {
+  double all = 0;
+  for (const PoseHypothesis& one : belief.hypotheses) all += std::exp(one.log_weight);
+  return all > 0 ? std::exp(belief.hypotheses.front().log_weight) / all : 0;
+}
+
 }  // namespace tassilo

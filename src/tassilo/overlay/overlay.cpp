@@ -79,6 +79,32 @@ std::vector<std::uint8_t> tinted_pixels(const FrameView& frame, const Scene& sce
   return tinted;
 }
 
+/// One step by itself.
+void draw_step(Canvas& canvas, const Layout& layout, const StepPicture& step, int columns, int rows) {
+  const auto width = static_cast<std::size_t>(columns);
+  std::vector<std::uint8_t> inside(width * static_cast<std::size_t>(rows), 0);
+  for (const PixelRun& run : step.region.runs()) {
+    if (run.row < 0 || run.row >= rows) continue;
+    for (int c = std::max<int>(run.begin, 0); c < std::min<int>(run.end, columns); ++c)
+      inside[static_cast<std::size_t>(run.row) * width + static_cast<std::size_t>(c)] = 255;
+  }
+  const Rect& all = layout.image;
+  const std::vector<std::vector<CanvasPoint>> everything{
+      {{all.x, all.y}, {all.right(), all.y}, {all.right(), all.bottom()}, {all.x, all.bottom()}}};
+  canvas.fill_polygons_where(everything, team_ink(Team::cyan).with_alpha(.45), inside, columns, all);
+  const Ink inks[] = {kBallInk, goal_ink(GoalColor::yellow), kBoundaryInk, kFreeInk};
+  for (std::size_t k = 0; k < step.contours.size(); ++k) {
+    std::vector<CanvasPoint> points;
+    for (const PixelPoint& point : step.contours[k].points) points.push_back(on_canvas(point, layout.scale));
+    if (step.contours[k].closed) points.push_back(points.front());
+    const double width_px = 1.6 * layout.text / 12;
+    if (points.size() == 1)
+      canvas.fill_circle(points.front(), width_px, inks[k % std::size(inks)]);
+    else
+      canvas.polyline(points, {.ink = inks[k % std::size(inks)], .width = width_px, .cased = true});
+  }
+}
+
 /// Draws onto the enlarged image.
 class ImageDrawing {
  public:
@@ -169,7 +195,7 @@ class ImageDrawing {
   LabelLayout labels_;
 };
 
-void draw_status(Canvas& canvas, const Layout& layout, const Scene& scene) {
+void draw_status(Canvas& canvas, const Layout& layout, const Scene& scene, const StepPicture* step) {
   canvas.clipped(layout.status, [&] {
     canvas.fill_rect(layout.status, kPanelInk);
     const double middle = layout.status.y + layout.status.height / 2, margin = layout.text;
@@ -181,6 +207,7 @@ void draw_status(Canvas& canvas, const Layout& layout, const Scene& scene) {
       x += canvas.text_width(text, style) + 1.4 * layout.text;
     };
     word("frame " + std::to_string(scene.frame), strong);
+    if (step != nullptr) word(step->title, strong);
     word(fixed(scene.t, 3) + " s", quiet);
     if (!scene.image.empty()) word(scene.image, quiet);
     if (scene.pose) {
@@ -218,9 +245,14 @@ Picture draw_overlay(const FrameView& frame, ColorRange range, const Scene& scen
   Canvas canvas(layout.width, layout.height, kPanelInk);
   canvas.image(picture_from_frame(frame, range), layout.image);
   if (!options.labels.empty()) canvas.label_map(options.labels, frame.width(), layout.image);
-  canvas.clipped(layout.image, [&] { ImageDrawing(canvas, layout).draw(frame, scene, options); });
+  canvas.clipped(layout.image, [&] {
+    if (options.step != nullptr)
+      draw_step(canvas, layout, *options.step, frame.width(), frame.height());
+    else
+      ImageDrawing(canvas, layout).draw(frame, scene, options);
+  });
   if (layout.bird.width > 0) draw_bird_view(canvas, layout.bird, scene, options.bird_range);
-  draw_status(canvas, layout, scene);
+  draw_status(canvas, layout, scene, options.step);
   return canvas.picture();
 }
 

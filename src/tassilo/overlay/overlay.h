@@ -2,14 +2,25 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "tassilo/camera/mount.h"
+#include "tassilo/contour/contour.h"
 #include "tassilo/image/frame.h"
 #include "tassilo/overlay/picture.h"
+#include "tassilo/region/region.h"
 #include "tassilo/scene/scene.h"
 #include "tassilo/surface/surface.h"
 
 namespace tassilo {
+
+/// What one step of the vision saw, to be looked at by itself.
+struct StepPicture {
+  std::string title;              ///< Shown in the status line.
+  Region region;                  ///< Tinted.
+  std::vector<Contour> contours;  ///< Polylines in the image, neighbors of the list in different colors. [px]
+};
 
 struct OverlayOptions {
   const MountedCamera* camera = nullptr;      ///< Borrowed. Without it nothing is drawn that lies on the floor.
@@ -17,6 +28,7 @@ struct OverlayOptions {
   /// Of the frame, borrowed. With it the free floor is tinted where carpet shows: lines keep their white. Without it
   /// only the balls keep their color.
   const Surface* surface = nullptr;
+  const StepPicture* step = nullptr;  ///< Borrowed. With it this is drawn on the image, and nothing else.
   int scale = 0;          ///< Picture pixels an image pixel, 1..16; 0: the smallest that makes the image 768 wide. [1]
   bool bird_view = true;  ///< The view from above beside the image; there is none without a camera.
   double bird_range = 6;  ///< The view from above reaches at least so far ahead of the robot. [m], > 0

@@ -28,7 +28,13 @@ std::string size_text(int width, int height) { return std::to_string(width) + "x
 
 }  // namespace
 
-Vision::Vision(const VisionSetup& setup) : classifier_(setup.colors), field_(setup.field), options_(setup.options) {
+Vision::Vision(const VisionSetup& setup) : Vision(setup, built_in_stages()) {}
+
+Vision::Vision(const VisionSetup& setup, const StageRegistry& registry)
+    : classifier_(setup.colors),
+      field_(setup.field),
+      options_(setup.options),
+      stages_(chosen_stages(registry, setup.options)) {
   setup.colors.check();
   setup.options.check();
   if (field_.line_width > 0) options_.surface.line_width = field_.line_width;
@@ -41,6 +47,8 @@ Vision::Vision(const VisionSetup& setup) : classifier_(setup.colors), field_(set
   optics_ = std::make_unique<const Optics>(camera, options_.mount_sigma());
   sectors_ = std::make_unique<const SectorMap>(camera, options_.free_space);
   target_ = std::make_unique<const FieldTarget>(field_);
+  if (stages_.localization.needs_walls && !field_.walls)
+    throw Error("vision.localization", "needs walls, and field " + field_.name + " has none; take `model`");
   start_pose_ = setup.start_pose;
 }
 
@@ -85,26 +93,34 @@ Scene Vision::operator()(const Frame& frame, VisionWorkspace& workspace, const O
   });
 
   const View view{frame.view, segmentation, workspace.surface, field_, optics_.get()};
-  BallSearch balls = timed(scene, "balls", [&] { return search_balls(view, options_.ball); });
+  BallSearch balls = timed(scene, "balls", [&] { return stages_.balls(view); });
   scene.balls = std::move(balls.balls);
   if (!balls.why.empty()) scene.why.emplace_back("balls", std::move(balls.why));
-  GoalSearch goals = timed(scene, "goals", [&] { return search_goals(view, options_.goal); });
+  GoalSearch goals = timed(scene, "goals", [&] { return stages_.goals(view); });
   scene.goals = std::move(goals.goals);
   for (RecycledString& why : goals.why) scene.why.emplace_back("goals", std::move(why));
-  scene.robots = timed(scene, "robots", [&] { return find_robots(view, options_.robot); });
+  scene.robots = timed(scene, "robots", [&] { return stages_.robots(view); });
   if (sectors_) {
-    Lines lines = timed(scene, "lines", [&] { return find_lines(view, options_.line); });
+    Lines lines = timed(scene, "lines", [&] { return stages_.lines(view); });
     scene.lines = std::move(lines.lines);
     scene.circles = std::move(lines.circles);
     scene.free_space =
-        timed(scene, "free_space", [&] { return find_free_space(*sectors_, workspace.surface, scene.balls); });
+        timed(scene, "free_space", [&] { return stages_.free_space(*sectors_, workspace.surface, scene.balls); });
     // A source that begins again is another drive.
     if (!workspace.belief || frame.t < workspace.belief->t)
       workspace.belief = start_pose_ ? belief_in(*start_pose_, frame.t) : PoseBelief{};
+    workspace.boundary.reset();
+    if (stages_.localization.needs_boundary || workspace.watch_boundary)
+      workspace.boundary = timed(scene, "boundary", [&] { return stages_.field_boundary(view); });
     Localized localized = timed(scene, "localize", [&] {
       const RobotMotion motion = robot_motion(odometry, workspace.belief->t, frame.t, options_.motion);
-      return localize(*target_, *workspace.belief, motion, {lines.marks, scene.goals, &*scene.free_space}, frame.t,
-                      options_.localize);
+      return stages_.localization.run({view,
+                                       *target_,
+                                       *workspace.belief,
+                                       motion,
+                                       {lines.marks, scene.goals, &*scene.free_space},
+                                       workspace.boundary ? &*workspace.boundary : nullptr,
+                                       frame.t});
     });
     scene.pose = localized.pose;
     scene.why.emplace_back("pose", std::move(localized.why));

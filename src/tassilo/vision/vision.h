@@ -12,6 +12,7 @@
 #include "tassilo/localize/localize.h"
 #include "tassilo/scene/scene.h"
 #include "tassilo/vision/options.h"
+#include "tassilo/vision/stages.h"
 
 namespace tassilo {
 
@@ -29,6 +30,8 @@ struct VisionSetup {
 struct VisionWorkspace {
   Segmentation segmentation;
   Surface surface;
+  bool watch_boundary = false;       ///< Find the boundary even when the localization does not ask for it.
+  std::optional<Boundary> boundary;  ///< Where somebody asked for it.
   std::optional<PoseBelief> belief;  ///< After the last frame.
 };
 
@@ -37,8 +40,10 @@ struct VisionWorkspace {
 /// Immutable after construction; one call at a time per workspace, from any thread.
 class Vision {
  public:
-  /// Throws Error when options, camera or table are out of range.
+  /// Throws Error when options, camera or table are out of range, or a stage has no alternative of the chosen name.
   explicit Vision(const VisionSetup& setup);
+  /// With alternatives from elsewhere, too.
+  Vision(const VisionSetup& setup, const StageRegistry& registry);
 
   /// Sees one frame. `timing` has a row for each stage and "total".
   /// odometry   null where there is none
@@ -54,6 +59,7 @@ class Vision {
   Classifier classifier_;
   FieldModel field_;
   VisionOptions options_;
+  Stages stages_;
   std::unique_ptr<const Optics> optics_;
   std::unique_ptr<const SectorMap> sectors_;
   std::unique_ptr<const FieldTarget> target_;
