@@ -228,6 +228,7 @@ double ms_between(std::chrono::steady_clock::time_point from, std::chrono::stead
   return std::chrono::duration<double, std::milli>(to - from).count();
 }
 
+/// All of the file, in the order of time; nothing where none is given.
 std::optional<Odometry> load_odometry(const std::string& file) {
   if (file.empty()) return std::nullopt;
   const std::vector<OdometrySample> samples = read_odometry(file);
@@ -273,6 +274,7 @@ int run_command(const RunArguments& arguments) {
   Sinks sinks(arguments);
   VisionWorkspace workspace;
   RunSummary summary;
+  if (odometry) summary.set_odometry(odometry->counts());
   Progress progress(!arguments.quiet, source.info().frame_count);
   std::optional<Error> damage;
   std::int64_t read = 0, done = 0;
