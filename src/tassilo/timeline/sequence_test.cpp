@@ -131,7 +131,8 @@ TEST(Sequence, FindsWhatIsBefore) {
     std::mt19937 random(seed);
     Sequence<int> sequence(1 + random() % 8);
     for (int value = 0; value < 20; ++value) sequence.add(static_cast<double>(random() % 16), value);
-    for (double t = -1; t < 18; t += 0.5) {
+    for (int half = -2; half < 36; ++half) {
+      const double t = 0.5 * half;
       const Timed<int>*before = nullptr, *at_or_before = nullptr;
       for (std::size_t i = 0; i < sequence.size(); ++i) {
         if (sequence[i].t < t) before = &sequence[i];
@@ -197,7 +198,11 @@ TEST(SequenceAt, IsLinearBetweenAndBesideValues) {
     std::uniform_real_distribution<double> rate(-2, 2), step(0.01, 1.2), anywhere(-1, 20);
     const double slope = rate(random), offset = rate(random);
     Sequence<Length> sequence(64);
-    for (double t = 0; t < 18; t += step(random)) sequence.add(t, {offset + slope * t});
+    double time = 0;
+    while (time < 18) {
+      sequence.add(time, {offset + slope * time});
+      time += step(random);
+    }
     const std::vector<double> times = times_of(sequence);
     for (int i = 0; i < 300; ++i) {
       const double t = anywhere(random);
@@ -241,7 +246,8 @@ TEST(SequenceAt, AValueAfterAGapChangesNoAnswer) {
     SCOPED_TRACE(gap);
     const auto before = lengths({{0, 0}, {0.5, 1}, {0.625, 3}});
     const auto after = lengths({{0, 0}, {0.5, 1}, {0.625, 3}, {0.625 + gap, -20}});
-    for (double t = -0.5; t < 0.625 + gap; t += 0.0625) {
+    for (int step = -8; 0.0625 * step < 0.625 + gap; ++step) {
+      const double t = 0.0625 * step;
       ASSERT_EQ(before.at(t).has_value(), after.at(t).has_value()) << t;
       if (before.at(t)) {
         EXPECT_EQ(before.at(t)->m, after.at(t)->m) << t;
