@@ -1,10 +1,13 @@
-// Any bytes are odometry or refused with an Error; what was read answers at each of its times with the sample itself.
+// Any bytes are odometry or refused with an Error; what was read answers at each of its times with the first sample of
+// that time, and between them whatever the order of other samples.
 
 #include <sys/mman.h>
 #include <unistd.h>
 
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
+#include <map>
 #include <string>
 
 #include "tassilo/base/contract.h"
@@ -28,11 +31,20 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace tassilo;
   try {
     const auto samples = read_odometry(file_with(data, size));
-    Odometry odometry(samples.size() + 2);
-    for (const OdometrySample& sample : samples) odometry.add(sample);
-    for (const OdometrySample& sample : samples) {
-      const auto seen = odometry.at(sample.t);
+    Odometry odometry(samples.size() + 2), in_order(samples.size() + 2);
+    std::map<double, OdometrySample> first;
+    for (const OdometrySample& sample : samples)
+      expects((odometry.add(sample) == Added::duplicate) == !first.emplace(sample.t, sample).second,
+              "each time is there once");
+    const SequenceCounts& counts = odometry.counts();
+    expects(odometry.size() == first.size() && counts.added + counts.duplicates == std::ssize(samples) &&
+                counts.out_of_order <= counts.added && counts.too_late == 0,
+            "what was read is there or was counted");
+    for (const auto& [t, sample] : first) in_order.add(sample);
+    for (const auto& [t, sample] : first) {
+      const auto seen = odometry.at(t);
       expects(seen && seen->x == sample.x && seen->y == sample.y, "a sample is found at its own time");
+      expects(odometry.at(t + 0.05).has_value() == in_order.at(t + 0.05).has_value(), "order makes no difference");
     }
   } catch (const Error&) {
   }

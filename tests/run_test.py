@@ -4,6 +4,7 @@
 usage: tests/run_test.py PROGRAM [unittest arguments]
 """
 import json
+import random
 import unittest
 
 from program import DATA, ROOT, ProgramTest, ffmpeg, main, png_size, raw_bytes, train_colors, without_timing
@@ -38,7 +39,7 @@ class Run(ProgramTest):
             self.judge(result, 0)
             self.assertIn("40 frames in", result.out)
             self.assertIn(", 0 dropped", result.out)
-            self.assertIn("odometry known at 40 frames, missing at 0", result.out)
+            self.assertIn("odometry: 40 of 40 frames\n", result.out)
             for word in ("ball", "cyan robot", "segment", "total", "median ms", "p99 ms", f"scenes: {recording}.jsonl", f"label maps: maps/{recording}"):
                 self.assertIn(word, result.out)
             self.assertEqual(result.err, "")
@@ -102,6 +103,18 @@ class Run(ProgramTest):
         self.succeeds("run", *recording_of("d01_approach"), "--colors", "div.yaml", "--output", "again.jsonl", "--quiet", "--threads", 2)
         first, again = self.scenes("d01_approach.jsonl"), self.scenes("again.jsonl")
         self.assertEqual([without_timing(s) for s in first], [without_timing(s) for s in again])
+
+    def test_odometry_in_any_order_gives_the_same_scenes(self):
+        lines = (DATA / "d01_approach/odometry.jsonl").read_text().splitlines(keepends=True)
+        shuffled = lines + lines[5:8]
+        random.Random(1).shuffle(shuffled)
+        times = [json.loads(line)["t"] for line in shuffled]
+        late = sum(t < max(times[:k], default=t) and t not in times[:k] for k, t in enumerate(times))
+        self.write("shuffled.jsonl", "".join(shuffled))
+        result = self.succeeds("run", *robot("d01_approach"), "--source", DATA / "d01_approach/video.mkv", "--odometry", "shuffled.jsonl", "--colors", "div.yaml", "--output", "any_order.jsonl")
+        self.assertIn(f"odometry: 40 of 40 frames; {late} samples out of order, 3 duplicate samples\n", result.out)
+        expected = [without_timing(s) for s in self.scenes("d01_approach.jsonl")]
+        self.assertEqual([without_timing(s) for s in self.scenes("any_order.jsonl")], expected)
 
     def test_raw_frames_on_standard_input_give_the_same_scenes(self):
         raw = raw_bytes(DATA / "d01_approach/video.mkv", "yuv422p", CLIP_FRAMES)

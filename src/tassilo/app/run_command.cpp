@@ -238,6 +238,7 @@ double ms_between(std::chrono::steady_clock::time_point from, std::chrono::stead
   return std::chrono::duration<double, std::milli>(to - from).count();
 }
 
+/// All of the file, in the order of time; nothing where none is given.
 std::optional<Odometry> load_odometry(const std::string& file) {
   if (file.empty()) return std::nullopt;
   const std::vector<OdometrySample> samples = read_odometry(file);
@@ -284,6 +285,7 @@ int run_command(const RunArguments& arguments) {
   VisionWorkspace workspace;
   workspace.watch_boundary = !arguments.overlay_step.empty();
   RunSummary summary;
+  if (odometry) summary.set_odometry(odometry->counts());
   Progress progress(!arguments.quiet, source.info().frame_count);
   std::optional<Error> damage;
   std::int64_t read = 0, done = 0;

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <string_view>
 
 namespace tassilo {
 namespace {
@@ -11,6 +12,11 @@ double quantile(std::vector<double> values, double q) {
   const auto at = static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1) + 0.5);
   std::nth_element(values.begin(), values.begin() + at, values.end());
   return values[static_cast<std::size_t>(at)];
+}
+
+/// "1 frame", "2 frames".
+std::string counted(std::int64_t count, std::string_view thing) {
+  return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
 }
 
 }  // namespace
@@ -50,14 +56,31 @@ void RunSummary::add(const Scene& scene) {
   }
 }
 
+/// "odometry: 118 of 120 frames, 2 missing; 3 samples out of order, 1 duplicate sample", without what is zero.
+std::string RunSummary::odometry_text() const {
+  const std::int64_t frames = odometry_known_ + odometry_missing_;
+  if (frames == 0) return "";
+  std::string out = fmt::format("odometry: {} of {}", odometry_known_, counted(frames, "frame"));
+  if (odometry_missing_ > 0) out += fmt::format(", {} missing", odometry_missing_);
+  if (odometry_known_ == 0) out += ": is it on the clock of the frames?";
+  const char* separator = "; ";
+  const auto samples = [&](std::int64_t count, std::string_view before, std::string_view after) {
+    if (count == 0) return;
+    out +=
+        fmt::format("{}{}{}", std::exchange(separator, ", "), counted(count, fmt::format("{}sample", before)), after);
+  };
+  samples(odometry_samples_.out_of_order, "", " out of order");
+  samples(odometry_samples_.duplicates, "duplicate ", "");
+  samples(odometry_samples_.too_late, "", " too late");
+  return out + "\n";
+}
+
 std::string RunSummary::text(double seconds) const {
   std::string out = fmt::format("\n{} frames in {:.2f} s", frames_, seconds);
   if (frames_ > 0 && seconds > 0) out += fmt::format(", {:.1f} frames/s", static_cast<double>(frames_) / seconds);
   const std::int64_t dropped = frames_ > 0 ? last_index_ - first_index_ + 1 - frames_ : 0;
   out += fmt::format(", {} dropped\n", dropped);
-  if (odometry_known_ + odometry_missing_ > 0)
-    out += fmt::format("odometry known at {} frames, missing at {}{}\n", odometry_known_, odometry_missing_,
-                       odometry_known_ == 0 ? ": is it on the clock of the frames?" : "");
+  out += odometry_text();
   if (frames_ == 0) return out;
   out += fmt::format("\n{:16}{:>10}{:>10}\n", "seen", "frames", "objects");
   for (const auto& [kind, count] : seen_) out += fmt::format("{:16}{:>10}{:>10}\n", kind, count.frames, count.objects);

@@ -1,11 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tassilo/scene/scene.h"
+#include "tassilo/timeline/sequence.h"
 
 namespace tassilo {
 
@@ -13,7 +14,9 @@ namespace tassilo {
 class RunSummary {
  public:
   void add(const Scene& scene);
-  /// Odometry was given: did it say where the robot was at this frame's time?
+  /// Odometry was given: how did its samples come?
+  void set_odometry(const SequenceCounts& samples) { odometry_samples_ = samples; }
+  /// Did it say where the robot was at this frame's time?
   void add_odometry(bool known) { ++(known ? odometry_known_ : odometry_missing_); }
 
   /// A table for people, several lines, each ended.
@@ -23,6 +26,7 @@ class RunSummary {
   std::int64_t frames_ = 0;
   std::int64_t first_index_ = 0, last_index_ = 0;
   std::int64_t odometry_known_ = 0, odometry_missing_ = 0;
+  SequenceCounts odometry_samples_;
   struct Count {
     std::int64_t frames = 0, objects = 0;
   };
@@ -30,6 +34,7 @@ class RunSummary {
   std::vector<std::pair<std::string, std::vector<double>>> times_;  ///< By stage, in the order they ran. [ms]
 
   Count& count_of(const std::string& kind);
+  std::string odometry_text() const;
 };
 
 }  // namespace tassilo

@@ -7,9 +7,9 @@
 
 namespace tassilo {
 
-/// All samples of odometry.jsonl in order; empty for an empty file.
-/// Throws Error("file:line", ...) for a line that is not {"t", "x", "y", "theta"} with finite numbers, or that goes
-/// back in time, or whose time repeats.
+/// All samples of odometry.jsonl in the order of its lines, whose times may go back and repeat: Odometry takes them so.
+/// Empty for an empty file.
+/// Throws Error("file:line", ...) for a line that is not {"t", "x", "y", "theta"} with finite numbers.
 std::vector<OdometrySample> read_odometry(const std::filesystem::path& file);
 
 }  // namespace tassilo

@@ -3,10 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <random>
+#include <vector>
 
 #include "tassilo/base/error.h"
 #include "tassilo/geometry/angle.h"
@@ -95,25 +97,71 @@ TEST(Odometry, KeepsTheNewestSamples) {
   EXPECT_EQ(odometry.at(8.5)->x, 8.5);
 }
 
-TEST(Odometry, RefusesTimeThatDoesNotIncreaseAndWhatIsNotFinite) {
+TEST(Odometry, CountsWhatDoesNotComeInOrder) {
+  Odometry odometry(3);
+  EXPECT_EQ(odometry.add({2, 2, 0, 0}), Added::newest);
+  EXPECT_EQ(odometry.add({1, 1, 0, 0}), Added::inserted);
+  EXPECT_EQ(odometry.add({2, 9, 9, 9}), Added::duplicate);
+  EXPECT_EQ(odometry.add({3, 3, 0, 0}), Added::newest);
+  EXPECT_EQ(odometry.add({0, 0, 0, 0}), Added::too_late);
+  EXPECT_EQ(odometry.add({2.5, 2.5, 0, 0}), Added::inserted);
+  EXPECT_EQ(odometry.counts(), (SequenceCounts{.added = 4, .out_of_order = 2, .duplicates = 1, .too_late = 1}));
+  for (const double t : {2.0, 2.25, 2.5, 3.0}) EXPECT_EQ(odometry.at(t)->x, t);
+}
+
+// Late, missing, repeated: as long as all come, the answers are those of samples in order, bit by bit.
+TEST(Odometry, AnswersTheSameForAnyOrder) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> step(0.001, 0.05), walk(-0.1, 0.1), where(-0.2, 3.2);
+    std::vector<OdometrySample> samples{{}};
+    while (samples.back().t < 3) {
+      const OdometrySample& last = samples.back();
+      samples.push_back(
+          {last.t + step(random), last.x + walk(random), last.y + walk(random), last.theta + walk(random)});
+    }
+    Odometry ordered(samples.size()), shuffled(samples.size());
+    for (const OdometrySample& sample : samples) ordered.add(sample);
+    std::ranges::shuffle(samples, random);
+    for (const OdometrySample& sample : samples) {
+      shuffled.add(sample);
+      if (random() % 4 == 0) {
+        EXPECT_EQ(shuffled.add(sample), Added::duplicate);
+      }
+    }
+    for (int i = 0; i < 200; ++i) {
+      const double t = where(random);
+      EXPECT_EQ(ordered.at(t), shuffled.at(t)) << t;
+    }
+  }
+}
+
+TEST(Odometry, KnowsNothingOfTheMiddleOfALongGap) {
+  Odometry odometry;
+  for (int i = 0; i <= 100; ++i)
+    if (i <= 20 || i >= 60) odometry.add({0.05 * i, 0.05 * i, 0, 0});  // Nothing from 1 to 3 s.
+  for (int step = -20; step < 520; ++step) {
+    const double t = 0.01 * step;
+    const double away = std::max({-t, std::min(t - 1, 3 - t), t - 5});
+    if (std::abs(away - Odometry::kMaxExtrapolation) < 1e-6) continue;
+    const auto pose = odometry.at(t);
+    ASSERT_EQ(pose.has_value(), away < Odometry::kMaxExtrapolation) << t;
+    if (pose) {
+      EXPECT_NEAR(pose->x, t, 1e-9);
+    }
+  }
+}
+
+TEST(Odometry, RefusesWhatIsNotFinite) {
   Odometry odometry;
   odometry.add({1, 0, 0, 0});
-  EXPECT_THAT(
-      [&] {
-        odometry.add({1, 0, 0, 0});
-      },
-      testing::ThrowsMessage<Error>("odometry: t is 1, must be later than the sample before, 1"));
-  EXPECT_THAT(
-      [&] {
-        odometry.add({0.5, 0, 0, 0});
-      },
-      testing::ThrowsMessage<Error>("odometry: t is 0.5, must be later than the sample before, 1"));
-  EXPECT_THAT(
-      [&] {
-        odometry.add({2, std::nan(""), 0, 0});
-      },
-      testing::ThrowsMessage<Error>("odometry: a value is not finite"));
+  const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
+  for (const OdometrySample& wrong :
+       {OdometrySample{nan, 0, 0, 0}, {2, nan, 0, 0}, {2, 0, infinity, 0}, {2, 0, 0, -infinity}, {infinity, 0, 0, 0}})
+    EXPECT_THAT([&] { odometry.add(wrong); }, testing::ThrowsMessage<Error>("odometry: a value is not finite"));
   EXPECT_EQ(odometry.size(), 1u);
+  EXPECT_EQ(odometry.counts(), SequenceCounts{.added = 1});
 }
 
 }  // namespace
