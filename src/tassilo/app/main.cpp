@@ -38,7 +38,7 @@ int failure(const std::string& message) {
 }  // namespace
 }  // namespace tassilo
 
-/// Exit codes: 0 done, 1 the world failed (a file, a stream), 2 wrong usage.
+/// Exit codes: 0 done, 1 the world failed (a file, a stream), 2 wrong usage, 3 what `compare --exit-code` tells.
 int main(int argc, char** argv) {
   using namespace tassilo;
   occupy_closed_streams();
@@ -54,11 +54,13 @@ int main(int argc, char** argv) {
   train->require_subcommand(1);
   const Command train_colors = add_train_colors(*train);
   const Command eval = add_eval(program);
+  const Command compare = add_compare(program);
   const Command info = add_info(program);
   const auto command = [&] {
     if (program.got_subcommand("run")) return run();
     if (program.got_subcommand("train")) return train_colors();
     if (program.got_subcommand("eval")) return eval();
+    if (program.got_subcommand("compare")) return compare();
     return info();
   };
 

@@ -2,9 +2,9 @@
 
 #include "tassilo/color/color_class.h"
 #include "tassilo/evaluate/evaluate.h"
+#include "tassilo/evaluate/internal/figures_json.h"
 
 namespace tassilo {
-namespace {
 
 using Json = nlohmann::ordered_json;
 
@@ -13,6 +13,17 @@ Json json_of(const std::optional<double>& value) { return value ? Json(*value + 
 Json json_of(const Spread& s) {
   return {{"median", json_of(s.median)}, {"p90", json_of(s.p90)}, {"max", json_of(s.max)}, {"count", s.count}};
 }
+
+Json json_of(const std::map<std::string, StageTimes>& timing_ms) {
+  Json out = Json::object();
+  for (const auto& [stage, ms] : timing_ms)
+    out[stage] = {{"median", json_of(ms.median)}, {"p99", json_of(ms.p99)}, {"max", json_of(ms.max)}};
+  return out;
+}
+
+namespace {
+
+using tassilo::json_of;  // not hidden by those below
 
 Json json_of(const PoseScore& s) {
   return {{"share", json_of(s.share)},
@@ -79,9 +90,6 @@ Json json_of(const FreeSpaceScore& s) {
 }
 
 Json json_of(const SequenceScore& s) {
-  Json timing = Json::object();
-  for (const auto& [stage, ms] : s.timing_ms)
-    timing[stage] = {{"median", json_of(ms.median)}, {"p99", json_of(ms.p99)}, {"max", json_of(ms.max)}};
   return {{"frames", s.frames},
           {"frames_missing", s.frames_missing},
           {"pose", json_of(s.pose)},
@@ -89,7 +97,7 @@ Json json_of(const SequenceScore& s) {
           {"goals", {{"yellow", json_of(s.yellow)}, {"blue", json_of(s.blue)}, {"both", json_of(s.goals)}}},
           {"robots", json_of(s.robots)},
           {"free_space", json_of(s.free_space)},
-          {"timing_ms", timing},
+          {"timing_ms", json_of(s.timing_ms)},
           {"notes", s.notes}};
 }
 
@@ -153,7 +161,7 @@ Json json_of(const Named<Score>& named) {
 
 }  // namespace
 
-std::string to_json(const Evaluation& evaluation) {
+Json json_of(const Evaluation& evaluation) {
   Json out = Json::object();
   if (evaluation.overall) {
     out["sequences"] = json_of(evaluation.sequences);
@@ -163,7 +171,9 @@ std::string to_json(const Evaluation& evaluation) {
     out["colors"] = {{"sets", json_of(evaluation.color_sets)}, {"overall", json_of(*evaluation.colors)}};
   if (evaluation.balls) out["balls"] = json_of(*evaluation.balls);
   if (!evaluation.poses.empty()) out["poses"] = json_of(evaluation.poses);
-  return out.dump(1) + "\n";
+  return out;
 }
+
+std::string to_json(const Evaluation& evaluation) { return json_of(evaluation).dump(1) + "\n"; }
 
 }  // namespace tassilo
