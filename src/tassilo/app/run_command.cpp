@@ -35,6 +35,7 @@ namespace {
 struct RunArguments {
   std::string robot, source, odometry, output, overlay, overlay_step, label_maps, colors, start_pose;
   std::string format, size, range;
+  std::vector<std::string> plugins;
   std::optional<RawFormat> raw;    ///< What `format`, `size`, `range` and `fps` say.
   std::optional<StartPose> start;  ///< What `start_pose` says.
   double fps = 0;
@@ -249,10 +250,10 @@ std::optional<Odometry> load_odometry(const std::string& file) {
 
 int run_command(const RunArguments& arguments) {
   using Clock = std::chrono::steady_clock;
-  RobotSetup setup = read_robot_setup(arguments.robot, arguments.colors);
+  RobotSetup setup = read_robot_setup(arguments.robot, arguments.colors, arguments.plugins);
   if (arguments.start) setup.vision.start_pose = gaussian_of(*arguments.start);
   check_paths(arguments, setup.read);
-  const Vision vision(setup.vision);
+  const Vision vision(setup.vision, setup.registry);
   const std::optional<Odometry> odometry = load_odometry(arguments.odometry);
   // Nothing but scene lines may go where scene lines go.
   std::FILE* report = arguments.output == "-" ? stderr : stdout;
@@ -344,6 +345,7 @@ Command add_run(CLI::App& program) {
       ->check(CLI::IsMember(std::vector<std::string>(kBoundarySteps.begin(), kBoundarySteps.end())));
   command->add_option("--label-maps", arguments->label_maps, "folder for color classes 0..8 as NNNN.png");
   command->add_option("--colors", arguments->colors, "color table, instead of the robot file's");
+  add_plugin_option(*command, arguments->plugins);
   command->add_option("--format", arguments->format, "raw frames: pixel format")
       ->check(CLI::IsMember({"yuv420p", "yuv422p", "yuyv422", "uyvy422", "nv12"}));
   command->add_option("--size", arguments->size, "raw frames: WIDTHxHEIGHT");
