@@ -15,6 +15,7 @@
 #include "tassilo/localize/localize.h"
 #include "tassilo/surface/surface.h"
 #include "tassilo/timeline/robot_motion.h"
+#include "tassilo/track/tracks.h"
 
 namespace tassilo {
 
@@ -28,6 +29,7 @@ struct VisionOptions {
   FreeSpaceOptions free_space;
   MotionOptions motion;
   LocalizeOptions localize;
+  TrackOptions track;
   /// How well the mount is known: what a careful calibration leaves, plus how much the robot shakes and nods while
   /// driving.
   double mount_angle_sigma = 0.0002;   ///< Of roll, pitch and yaw each. [rad]

@@ -99,10 +99,13 @@ Scene Vision::operator()(const Frame& frame, VisionWorkspace& workspace, const O
     scene.free_space =
         timed(scene, "free_space", [&] { return find_free_space(*sectors_, workspace.surface, scene.balls); });
     // A source that begins again is another drive.
-    if (!workspace.belief || frame.t < workspace.belief->t)
+    if (!workspace.belief || frame.t < workspace.belief->t) {
       workspace.belief = start_pose_ ? belief_in(*start_pose_, frame.t) : PoseBelief{};
+      workspace.tracks = TrackState{};
+      workspace.tracks->t = frame.t;
+    }
+    const RobotMotion motion = robot_motion(odometry, workspace.belief->t, frame.t, options_.motion);
     Localized localized = timed(scene, "localize", [&] {
-      const RobotMotion motion = robot_motion(odometry, workspace.belief->t, frame.t, options_.motion);
       return localize(*target_, *workspace.belief, motion, {lines.marks, scene.goals, &*scene.free_space}, frame.t,
                       options_.localize);
     });
@@ -112,6 +115,11 @@ Scene Vision::operator()(const Frame& frame, VisionWorkspace& workspace, const O
       if (localized.line_of[k] >= 0)
         scene.lines[k].model = target_->curves.lines[static_cast<std::size_t>(localized.line_of[k])].name;
     workspace.belief = std::move(localized.belief);
+    workspace.tracks = timed(scene, "track", [&] {
+      const TrackObservation seen{scene.balls, scene.robots, &*scene.free_space, &optics_->camera};
+      return track(*workspace.tracks, motion, seen, frame.t, options_.track);
+    });
+    scene.tracks = told(*workspace.tracks, options_.track);
   }
   scene.timing.push_back({"total", ms_since(start)});
   return scene;

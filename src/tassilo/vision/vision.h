@@ -11,6 +11,7 @@
 #include "tassilo/image/frame.h"
 #include "tassilo/localize/localize.h"
 #include "tassilo/scene/scene.h"
+#include "tassilo/track/tracks.h"
 #include "tassilo/vision/options.h"
 
 namespace tassilo {
@@ -30,6 +31,7 @@ struct VisionWorkspace {
   Segmentation segmentation;
   Surface surface;
   std::optional<PoseBelief> belief;  ///< After the last frame.
+  std::optional<TrackState> tracks;  ///< Likewise.
 };
 
 /// The one place where stages are put in order: from frame to scene.
