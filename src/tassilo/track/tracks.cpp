@@ -39,14 +39,16 @@ RecycledVector<Sighting> sightings_of(const TrackObservation& seen, const TrackO
   }
   for (const RobotSeen& robot : seen.robots) {
     if (!robot.floor) continue;
-    // The nearest point wanders over the body as we drive, its middle does not. How far the visible outline leads
-    // astray differs from frame to frame as well, when other bodies hide more or less of it.
-    const double spread = options.robot_common * options.robot_common;
-    sightings.push_back({TrackKind::robot,
-                         robot.team,
-                         1,
-                         {robot.floor->center.x, robot.floor->center.y},
-                         robot.floor->nearest.covariance + spread * Eigen::Matrix2d::Identity()});
+    // The nearest point wanders over the body as we drive, its middle does not. Of a robot narrower than robots are
+    // another body or the image's border hides a part, on a side that is not known; a wider one may be two, one beside
+    // the other: half of the difference is what the middle may be off, across the line of sight.
+    const Eigen::Vector2d middle(robot.floor->center.x, robot.floor->center.y);
+    const double off = (robot.floor->width - options.robot_width) / 2;
+    const Eigen::Vector2d across = Eigen::Vector2d(-middle.y(), middle.x()).normalized();
+    const double turning = options.robot_common * options.robot_common;  // it shows another side of itself
+    const Eigen::Matrix2d spread = robot.floor->nearest.covariance + off * off * across * across.transpose() +
+                                   turning * Eigen::Matrix2d::Identity();
+    sightings.push_back({TrackKind::robot, robot.team, 1, middle, spread});
   }
   std::ranges::sort(sightings, {}, [](const Sighting& s) {
     return std::tuple(s.kind, -s.confidence, s.place.squaredNorm(), s.place.x(), s.place.y(), s.team);
@@ -207,6 +209,7 @@ void TrackOptions::check() const {
   above("ball_speed", ball_speed, 0);
   above("robot_speed", robot_speed, 0);
   at_least("kick_speed", kick_speed, 0);
+  above("robot_width", robot_width, 0);
   at_least("ball_common", ball_common, 0);
   at_least("robot_common", robot_common, 0);
   above("gate", gate, 0);
@@ -222,9 +225,16 @@ TrackState predicted(const TrackState& before, const RobotMotion& motion, double
   TrackState state;
   state.t = std::max(t, before.t);
   state.next_id = before.next_id;
+  const double dt = state.t - before.t;
+  if (motion.is_measured)
+    state.own_velocity_covariance.setZero();
+  else if (dt > 0)
+    state.own_velocity_covariance = motion.covariance / (dt * dt);
+  else
+    state.own_velocity_covariance = before.own_velocity_covariance;
   state.tracks.reserve(before.tracks.size());
   for (Track track : before.tracks) {
-    predict(track, motion, state.t - before.t, options);
+    predict(track, motion, dt, options);
     if (state.t - track.seen_at <= options.max_age && largest_sigma(track.covariance) <= options.max_sigma)
       state.tracks.push_back(track);
   }
@@ -312,6 +322,10 @@ RecycledVector<TrackSeen> told(const TrackState& state, const TrackOptions& opti
     // What all sightings have wrong alike does not average out.
     const double common = common_sigma(one->kind, one->mean.head<2>().norm(), options);
     covariance.topLeftCorner<2, 2>().diagonal().array() += common * common;
+    Eigen::Matrix<double, 2, 3> by_own_velocity;
+    by_own_velocity << 1, 0, -seen.y, 0, 1, seen.x;
+    const Eigen::Matrix2d own = by_own_velocity * state.own_velocity_covariance * by_own_velocity.transpose();
+    covariance.bottomRightCorner<2, 2>() += (own + own.transpose()) / 2;
     std::copy_n(covariance.data(), 16, seen.covariance.begin());
     all.push_back(seen);
   }

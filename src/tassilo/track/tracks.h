@@ -14,17 +14,18 @@ namespace tassilo {
 struct TrackOptions {
   /// Change of velocity within a second that is nobody's kick: carpet, wheels, touches. Random; it grows with the root
   /// of time. [m/s/sqrt(s)], > 0
-  double ball_acceleration = 0.6;
-  double robot_acceleration = 0.6;
-  double ball_speed = 1;   ///< Sigma of the velocity of a ball just found. [m/s], > 0
-  double robot_speed = 1;  ///< Of a robot just found. [m/s], > 0
-  double kick_speed = 4;   ///< Sigma of the change of velocity by a kick; 0: none is reckoned with. [m/s], >= 0
+  double ball_acceleration = 0.4;
+  double robot_acceleration = 0.5;
+  double ball_speed = 1;     ///< Sigma of the velocity of a ball just found. [m/s], > 0
+  double robot_speed = 0.5;  ///< Of a robot just found. [m/s], > 0
+  double kick_speed = 4;     ///< Sigma of the change of velocity by a kick; 0: none is reckoned with. [m/s], >= 0
   /// Share of a ball's place that all frames have wrong alike (its radius, the mount), relative to its distance. Sigma,
   /// [1], >= 0
   double ball_common = 0.002;
-  double robot_common = 0.05;  ///< A robot's middle is told from what shows of its outline. Sigma, [m], >= 0
+  double robot_width = 0.45;   ///< Of a robot in full view. [m], > 0
+  double robot_common = 0.04;  ///< A robot's middle is told from what shows of its outline. Sigma, [m], >= 0
   double gate = 13.8;          ///< Squared Mahalanobis distance of a sighting that belongs to a track: 99.9 %. [1], > 0
-  double sure_ball = 0.5;      ///< A ball of this confidence is told at once while there is no other. 0..1
+  double sure_ball = 0.3;      ///< A ball of this confidence is told at once while there is no other. 0..1
   int sightings = 3;           ///< Anything else is told after so many. >= 1
   double max_age = 1;          ///< Kept so long without being seen. [s], > 0
   double max_sigma = 1;        ///< A place less certain than this in any direction is none. [m], > 0
@@ -53,6 +54,9 @@ struct TrackState {
   double t = 0;                  ///< [s]
   RecycledVector<Track> tracks;  ///< Oldest first; at most max_tracks.
   int next_id = 1;
+  /// Of the robot's own velocity, forward, left and turning, where no odometry tells it: then the velocity of all
+  /// objects is wrong by it alike. Zero with odometry. [m/s, rad/s]
+  Eigen::Matrix3d own_velocity_covariance = Eigen::Matrix3d::Zero();
 };
 
 /// What one frame shows of them. Without floor values an object is passed over.

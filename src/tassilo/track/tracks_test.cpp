@@ -316,6 +316,8 @@ TEST(Track, WithoutOdometryIdentitiesLast) {
     const auto tracks = drive.see({ball_at(drive.in_robot({4, 0}))}, {robot_at(drive.in_robot({4, 1.5}))}, unknown);
     if (k < 5) continue;
     ASSERT_EQ(tracks.size(), 2u);
+    // The robot drives at .7 m/s and turns at .3 rad/s, which it does not know.
+    for (const TrackSeen& one : tracks) EXPECT_GT(std::sqrt(one.covariance[10]), 0.7);
     if (ids.empty()) ids = {tracks[0].id, tracks[1].id};
     EXPECT_EQ((std::vector{tracks[0].id, tracks[1].id}), ids);
   }

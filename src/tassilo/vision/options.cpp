@@ -117,6 +117,8 @@ constexpr Option kOptions[] = {
          [](V& o) -> double& { return o.track.kick_speed; }),
     real("track_ball_common", "1", 0, 1, "share of a ball's distance that all frames have wrong alike",
          [](V& o) -> double& { return o.track.ball_common; }),
+    real("track_robot_width", "m", 0.01, 10, "width of a robot in full view; of a narrower one something is hidden",
+         [](V& o) -> double& { return o.track.robot_width; }),
     real("track_robot_common", "m", 0, 1, "uncertainty of a robot's middle that does not average out",
          [](V& o) -> double& { return o.track.robot_common; }),
     real("track_gate", "1", 0.1, 1000, "largest squared Mahalanobis distance of a sighting that belongs to a track",
