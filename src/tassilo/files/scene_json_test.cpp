@@ -211,9 +211,10 @@ TEST(SceneJson, MalformedLinesAreRefused) {
       {R"("frame":0)", R"("frame":-1)", "frame is '-1', must be >= 0"},
       {R"("frame":0,)", "", "key 'frame' is missing"},
       {R"("t":0.5)", R"("t":null)", "t is empty, must be a finite number"},
-      {R"("t":0.5)", R"("t":0.5,"tracks":[])",
-       "unknown key 'tracks', must be frame, t, image, pose, balls, goals, robots, lines, free_space, why or "
+      {R"("t":0.5)", R"("t":0.5,"history":[])",
+       "unknown key 'history', must be frame, t, image, pose, balls, goals, robots, lines, free_space, tracks, why or "
        "timing_ms"},
+      {R"("t":0.5)", R"("t":0.5,"tracks":[{"id":0}])", "tracks[0].id is '0', must be >= 1 and <= 2147483647"},
       {R"("x":1,)", R"("x":null,)", "balls[0].y is not null, must be like x"},
       {R"("near":1,)", R"("near":null,)", "balls[0].near is null, must be like x"},
       {R"("cov":[1,0,0,1])", R"("cov":[1,0,0])", "balls[0].cov has 3 values, must have 4"},

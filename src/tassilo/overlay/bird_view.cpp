@@ -177,15 +177,13 @@ class BirdDrawing {
   /// Where it comes in a moment, and its number; a dashed ring where it is remembered only.
   void track(const TrackSeen& track) const {
     const FloorPoint place{track.x, track.y};
+    const CanvasPoint middle = at(place);
     const Ink color = track_ink(track);
-    if (track.age > 0) {
-      const double radius = track.kind == TrackKind::ball ? 5 * unit_ : .2 * px_per_m_;
-      canvas_.stroke_circle(at(place), radius, {.ink = color, .width = 1.3 * unit_, .dashed = true});
-    }
-    canvas_.arrow(at(place), at(place + kArrowTime * FloorPoint{track.vx, track.vy}),
+    const double radius = track.kind == TrackKind::ball ? 5 * unit_ : .2 * px_per_m_;
+    if (track.age > 0) canvas_.stroke_circle(middle, radius, {.ink = color, .width = 1.3 * unit_, .dashed = true});
+    canvas_.arrow(middle, at(place + kArrowTime * FloorPoint{track.vx, track.vy}),
                   {.ink = color, .width = 1.6 * unit_});
-    const CanvasPoint number = at(place);
-    canvas_.text(number_text(track.id), {number.x - 7 * unit_, number.y}, TextAnchor::right,
+    canvas_.text(number_text(track.id), {middle.x - radius - 3 * unit_, middle.y}, TextAnchor::right,
                  {.size = 9.5 * unit_, .ink = color});
   }
 
