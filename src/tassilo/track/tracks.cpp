@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <tuple>
 
 #include "tassilo/base/option_check.h"
@@ -23,7 +24,17 @@ struct Sighting {
   double confidence = 1;
   Eigen::Vector2d place;
   Eigen::Matrix2d covariance;
+  Eigen::Vector2d slack =
+      Eigen::Vector2d::Zero();  ///< What is seen fits all places from place - slack to place + slack.
 };
+
+/// From where a track is to the nearest place that a sighting fits.
+Eigen::Vector2d offset(const Track& track, const Sighting& sighting) {
+  const Eigen::Vector2d straight = sighting.place - track.mean.head<2>();
+  const double length = sighting.slack.squaredNorm();
+  if (!(length > 0)) return straight;
+  return straight - std::clamp(straight.dot(sighting.slack) / length, -1., 1.) * sighting.slack;
+}
 
 double common_sigma(TrackKind kind, double distance, const TrackOptions& options) {
   return kind == TrackKind::ball ? options.ball_common * distance : options.robot_common;
@@ -35,20 +46,20 @@ RecycledVector<Sighting> sightings_of(const TrackObservation& seen, const TrackO
   for (const Ball& ball : seen.balls) {
     if (!ball.floor) continue;
     const auto& [mean, covariance] = ball.floor->position;
-    sightings.push_back({TrackKind::ball, Team::unknown, ball.confidence, {mean.x, mean.y}, covariance});
+    sightings.push_back({TrackKind::ball, Team::unknown, ball.confidence, {mean.x, mean.y}, covariance, {0, 0}});
   }
   for (const RobotSeen& robot : seen.robots) {
     if (!robot.floor) continue;
     // The nearest point wanders over the body as we drive, its middle does not. Of a robot narrower than robots are
     // another body or the image's border hides a part, on a side that is not known; a wider one may be two, one beside
-    // the other: half of the difference is what the middle may be off, across the line of sight.
+    // the other: the middle may be off by half of the difference, across the line of sight.
     const Eigen::Vector2d middle(robot.floor->center.x, robot.floor->center.y);
-    const double off = (robot.floor->width - options.robot_width) / 2;
     const Eigen::Vector2d across = Eigen::Vector2d(-middle.y(), middle.x()).normalized();
+    const Eigen::Vector2d slack = (robot.floor->width - options.robot_width) / 2 * across;
     const double turning = options.robot_common * options.robot_common;  // it shows another side of itself
-    const Eigen::Matrix2d spread = robot.floor->nearest.covariance + off * off * across * across.transpose() +
-                                   turning * Eigen::Matrix2d::Identity();
-    sightings.push_back({TrackKind::robot, robot.team, 1, middle, spread});
+    const Eigen::Matrix2d spread =
+        robot.floor->nearest.covariance + slack * slack.transpose() + turning * Eigen::Matrix2d::Identity();
+    sightings.push_back({TrackKind::robot, robot.team, 1, middle, spread, slack});
   }
   std::ranges::sort(sightings, {}, [](const Sighting& s) {
     return std::tuple(s.kind, -s.confidence, s.place.squaredNorm(), s.place.x(), s.place.y(), s.team);
@@ -104,15 +115,15 @@ bool contradict(Team team, const Sighting& sighting) {
   return team != Team::unknown && sighting.team != Team::unknown && team != sighting.team;
 }
 
-constexpr double never = 1e9;
+constexpr double kNever = 1e9;  ///< A cost that no pair is worth.
 
 /// -2 log likelihood of a sighting of this track.
 double cost_of(const Track& track, const Eigen::Matrix4d& covariance, const Sighting& sighting, double gate) {
-  if (track.kind != sighting.kind) return never;
+  if (track.kind != sighting.kind) return kNever;
   const Eigen::Matrix2d spread = covariance.topLeftCorner<2, 2>() + sighting.covariance;
-  const Eigen::Vector2d off = sighting.place - track.mean.head<2>();
+  const Eigen::Vector2d off = offset(track, sighting);
   const double squared = off.dot(spread.inverse() * off);
-  if (!(squared <= gate)) return never;
+  if (!(squared <= gate)) return kNever;
   constexpr double wrong_team = 6;  // one marker color in twenty is misread: -2 log(.05)
   return squared + 2 * std::log(2 * std::numbers::pi) + std::log(spread.determinant()) +
          (contradict(track.team(), sighting) ? wrong_team : 0);
@@ -128,7 +139,7 @@ void update(Track& track, const Sighting& sighting, double t) {
   const Eigen::Matrix4d& before = track.covariance;
   const Eigen::Matrix2d spread = before.topLeftCorner<2, 2>() + sighting.covariance;
   const Eigen::Matrix<double, 4, 2> gain = before.leftCols<2>() * spread.inverse();
-  track.mean += gain * (sighting.place - track.mean.head<2>());
+  track.mean += gain * offset(track, sighting);
   const Eigen::Matrix4d left = Eigen::Matrix4d::Identity() - gain * place;
   const Eigen::Matrix4d after = left * before * left.transpose() + gain * sighting.covariance * gain.transpose();
   track.covariance = (after + after.transpose()) / 2;
@@ -185,12 +196,32 @@ bool is_in_clear_view(const Track& track, const TrackObservation& seen) {
 /// Hands sightings to tracks, as likely as possible altogether, and takes them in; pairs are `cost(track, sighting)`.
 template <class Cost, class Take>
 void hand_out(const RecycledVector<Track>& tracks, const RecycledVector<Sighting>& sightings, Cost cost, Take take) {
-  CostTable table(tracks.size(), sightings.size(), never);
+  CostTable table(tracks.size(), sightings.size(), kNever);
   for (std::size_t i = 0; i < tracks.size(); ++i)
     for (std::size_t k = 0; k < sightings.size(); ++k) table.at(i, k) = cost(i, k);
   const RecycledVector<int> sighting_of = assign(table, kAlone);
   for (std::size_t i = 0; i < tracks.size(); ++i)
     if (sighting_of[i] >= 0) take(i, static_cast<std::size_t>(sighting_of[i]));
+}
+
+/// Counts misses and gives up what was not seen though it should have been, or where another one is.
+void forget_missed(RecycledVector<Track>& tracks, const RecycledVector<char>& was_seen, const TrackObservation& seen,
+                   const TrackOptions& options) {
+  RecycledVector<char> is_gone(tracks.size(), 0);
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    Track& missed = tracks[i];
+    if (was_seen[i]) continue;
+    const bool is_sure = missed.id > 0;
+    if (!is_sure || is_in_clear_view(missed, seen)) missed.clear_misses += 1;
+    is_gone[i] = missed.clear_misses >= (is_sure ? options.clear_misses : std::min(options.clear_misses, 2));
+    for (std::size_t k = 0; k < tracks.size() && !is_gone[i]; ++k)
+      is_gone[i] = was_seen[k] && tracks[k].kind == missed.kind &&
+                   (tracks[k].mean - missed.mean).head<2>().norm() < least_apart(missed.kind);
+  }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < tracks.size(); ++i)
+    if (!is_gone[i]) tracks[kept++] = tracks[i];
+  tracks.resize(kept);
 }
 
 }  // namespace
@@ -213,7 +244,8 @@ void TrackOptions::check() const {
   at_least("ball_common", ball_common, 0);
   at_least("robot_common", robot_common, 0);
   above("gate", gate, 0);
-  at_least("sure_ball", sure_ball, 0);
+  if (!(sure_ball >= 0 && sure_ball <= 1))
+    throw Error("track.sure_ball", "is " + std::to_string(sure_ball) + ", must be >= 0 and <= 1");
   check_at_least("track.sightings", sightings, 1);
   above("max_age", max_age, 0);
   above("max_sigma", max_sigma, 0);
@@ -260,8 +292,8 @@ TrackState track(const TrackState& before, const RobotMotion& motion, const Trac
   hand_out(
       tracks, sightings,
       [&](std::size_t i, std::size_t k) {
-        if (was_seen[i] || !is_told_ball(tracks[i]) || taken[k]) return never;
-        if (sightings[k].confidence < options.sure_ball) return never;
+        if (was_seen[i] || !is_told_ball(tracks[i]) || taken[k]) return kNever;
+        if (sightings[k].confidence < options.sure_ball) return kNever;
         return cost_of(tracks[i], kicked(tracks[i], state.t, options), sightings[k], options.gate);
       },
       [&](std::size_t i, std::size_t k) {
@@ -269,28 +301,11 @@ TrackState track(const TrackState& before, const RobotMotion& motion, const Trac
         take(i, k);
       });
 
-  // What was not seen, though it should have been, or where another one is.
-  RecycledVector<char> is_gone(tracks.size(), 0);
-  for (std::size_t i = 0; i < tracks.size(); ++i) {
-    Track& missed = tracks[i];
-    if (was_seen[i]) continue;
-    const bool is_sure = missed.id > 0;
-    if (!is_sure || is_in_clear_view(missed, seen)) missed.clear_misses += 1;
-    const int patience = is_sure ? options.clear_misses : std::min(options.clear_misses, 2);
-    is_gone[i] = missed.clear_misses >= patience;
-    for (std::size_t k = 0; k < tracks.size() && !is_gone[i]; ++k)
-      is_gone[i] = was_seen[k] && tracks[k].kind == missed.kind &&
-                   (tracks[k].mean - missed.mean).head<2>().norm() < least_apart(missed.kind);
-  }
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < tracks.size(); ++i)
-    if (!is_gone[i]) tracks[kept++] = tracks[i];
-  tracks.resize(kept);
-
+  forget_missed(tracks, was_seen, seen, options);
   for (std::size_t k = 0; k < sightings.size() && tracks.size() < static_cast<std::size_t>(options.max_tracks); ++k)
     if (!taken[k]) {
       Track newcomer = begun(sightings[k], state.t, options);
-      if (largest_sigma(newcomer.covariance) > options.max_sigma) continue;
+      if (!(largest_sigma(newcomer.covariance) <= options.max_sigma)) continue;
       const bool is_only_ball = newcomer.kind == TrackKind::ball && std::ranges::none_of(tracks, is_told_ball);
       if (is_only_ball && sightings[k].confidence >= options.sure_ball) newcomer.id = state.next_id++;
       tracks.push_back(newcomer);

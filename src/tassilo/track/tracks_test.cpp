@@ -306,6 +306,22 @@ TEST(Track, TheOrderOfSightingsDoesNotMatter) {
   }
 }
 
+// When something hides half of a robot, the middle of what shows is not its middle: it does not move for that.
+TEST(Track, APartlyHiddenRobotStandsStill) {
+  Drive drive;
+  RecycledVector<TrackSeen> tracks;
+  for (int k = 0; k < 30; ++k) {
+    RobotSeen robot = robot_at({2, k < 15 ? 0.0 : 0.12}, Team::cyan);
+    robot.floor->width = k < 15 ? 0.45 : 0.21;
+    tracks = drive.see({}, {robot});
+    if (k < 3) continue;
+    ASSERT_EQ(tracks.size(), 1u) << k;
+    EXPECT_EQ(tracks[0].id, 1);
+    EXPECT_LT(std::abs(tracks[0].vy), 0.01);
+  }
+  EXPECT_NEAR(tracks[0].y, 0, 0.01);
+}
+
 // Without odometry the robot may have moved by a decimetre between frames: identities last, velocities are unknown.
 TEST(Track, WithoutOdometryIdentitiesLast) {
   Drive drive;
@@ -336,6 +352,9 @@ TEST(TrackOptions, AreChecked) {
   TrackOptions options;
   EXPECT_NO_THROW(options.check());
   options.max_age = 0;
+  EXPECT_THROW(options.check(), Error);
+  options = {};
+  options.sure_ball = 1.5;
   EXPECT_THROW(options.check(), Error);
   options = {};
   options.gate = std::numeric_limits<double>::quiet_NaN();
