@@ -12,6 +12,7 @@
 #include "tassilo/localize/localize.h"
 #include "tassilo/scene/scene.h"
 #include "tassilo/timeline/sequence.h"
+#include "tassilo/track/tracks.h"
 #include "tassilo/vision/options.h"
 #include "tassilo/vision/stages.h"
 
@@ -32,8 +33,12 @@ struct VisionSetup {
 struct VisionHistory {
   static constexpr std::size_t kFrames = 64;  ///< Two seconds and more of a usual camera.
   Sequence<PoseBelief> beliefs{kFrames};
+  Sequence<TrackState> tracks{kFrames};
 
-  void clear() { beliefs.clear(); }
+  void clear() {
+    beliefs.clear();
+    tracks.clear();
+  }
 };
 
 /// Memory that is used again from frame to frame, and what the last frame left in it, to be shown or stored.
