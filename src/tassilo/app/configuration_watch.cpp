@@ -2,7 +2,6 @@
 
 #include <sys/stat.h>
 
-#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <utility>
@@ -15,6 +14,16 @@ constexpr int kPausesUntilRetry = 10;
 
 }  // namespace
 
+std::shared_ptr<const Configuration> load_configuration(const std::string& robot_file, const std::string& colors,
+                                                        const std::function<void(RobotSetup&)>& change) {
+  using std::chrono::system_clock, std::chrono::nanoseconds;
+  const auto now = std::chrono::duration_cast<nanoseconds>(system_clock::now().time_since_epoch());
+  RobotSetup setup = read_robot_setup(robot_file, colors);
+  change(setup);
+  Vision vision(setup.vision);
+  return std::make_shared<const Configuration>(Configuration{now.count(), std::move(setup), std::move(vision)});
+}
+
 ConfigurationWatch::FileState ConfigurationWatch::state_of(const std::string& path) {
   FileState state{.path = path};
   struct stat found {};
@@ -26,15 +35,19 @@ ConfigurationWatch::FileState ConfigurationWatch::state_of(const std::string& pa
   return state;
 }
 
-std::vector<ConfigurationWatch::FileState> ConfigurationWatch::states_of(const RobotSetup& setup) {
+std::vector<ConfigurationWatch::FileState> ConfigurationWatch::read_states_of(const Configuration& configuration) {
+  constexpr std::int64_t coarse_ns = 10'000'000;  // file systems' clocks tick some ms
   std::vector<FileState> states;
-  for (const NamedFile& file : setup.read)
-    if (!file.path.empty()) states.push_back(state_of(file.path));
+  for (const NamedFile& file : configuration.setup.read) {
+    if (file.path.empty()) continue;
+    FileState& state = states.emplace_back(state_of(file.path));
+    if (state.changed_ns > configuration.read_at_ns - coarse_ns) state.changed_ns = 0;
+  }
   return states;
 }
 
 ConfigurationWatch::ConfigurationWatch(const Configuration& now, Load load)
-    : load_(std::move(load)), loaded_(states_of(now.setup)), thread_([this] { watch(); }) {}
+    : load_(std::move(load)), loaded_(read_states_of(now)), thread_([this] { watch(); }) {}
 
 ConfigurationWatch::~ConfigurationWatch() {
   {
@@ -64,11 +77,7 @@ void ConfigurationWatch::watch() {
     pauses = 0;
     try {
       std::shared_ptr<const Configuration> configuration = load_();
-      std::vector<FileState> read = states_of(configuration->setup);
-      // What was written while it was read is read again.
-      for (FileState& file : read)
-        if (const auto old = std::ranges::find(before, file.path, &FileState::path); old != before.end()) file = *old;
-      loaded_ = before = std::move(read);
+      loaded_ = before = read_states_of(*configuration);
       refusal.clear();
       const std::lock_guard lock(mutex_);
       news_ = {std::move(configuration), ""};

@@ -16,9 +16,14 @@ namespace tassilo {
 
 /// A robot as its files say, and the vision made of it.
 struct Configuration {
+  std::int64_t read_at_ns = 0;  ///< When reading the files began, since the UNIX epoch.
   RobotSetup setup;
   Vision vision;
 };
+/// Reads all files and sets up the vision. `change` may set what the command line says. Throws Error naming the file
+/// that is wrong.
+std::shared_ptr<const Configuration> load_configuration(const std::string& robot_file, const std::string& colors,
+                                                        const std::function<void(RobotSetup&)>& change);
 
 /// Watches the files of a configuration while it is at work, and loads it anew in a thread of its own when one of them
 /// was written: the caller takes the new one over when it likes, between two frames.
@@ -51,7 +56,8 @@ class ConfigurationWatch {
     std::uint64_t identity = 0;
     friend bool operator==(const FileState&, const FileState&) = default;
   };
-  static std::vector<FileState> states_of(const RobotSetup& setup);
+  /// As they were when they were read; what was written since then, or at that moment, has no time.
+  static std::vector<FileState> read_states_of(const Configuration& configuration);
   static FileState state_of(const std::string& path);
 
   void watch();

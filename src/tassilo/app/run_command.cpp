@@ -252,17 +252,14 @@ std::optional<Odometry> load_odometry(const std::string& file) {
   return odometry;
 }
 
-/// Throws Error naming the file that is wrong.
-std::shared_ptr<const Configuration> load_configuration(const RunArguments& arguments) {
-  RobotSetup setup = read_robot_setup(arguments.robot, arguments.colors);
-  if (arguments.start) setup.vision.start_pose = gaussian_of(*arguments.start);
-  Vision vision(setup.vision);
-  return std::make_shared<const Configuration>(Configuration{std::move(setup), std::move(vision)});
-}
-
 int run_command(const RunArguments& arguments) {
   using Clock = std::chrono::steady_clock;
-  std::shared_ptr<const Configuration> configuration = load_configuration(arguments);
+  const auto load = [&] {
+    return load_configuration(arguments.robot, arguments.colors, [&](RobotSetup& setup) {
+      if (arguments.start) setup.vision.start_pose = gaussian_of(*arguments.start);
+    });
+  };
+  std::shared_ptr<const Configuration> configuration = load();
   check_paths(arguments, configuration->setup.read);
   const std::optional<Odometry> odometry = load_odometry(arguments.odometry);
   // Nothing but scene lines may go where scene lines go.
@@ -306,7 +303,7 @@ int run_command(const RunArguments& arguments) {
   std::optional<ConfigurationWatch> watch;
   if (arguments.watch)
     watch.emplace(*configuration, [&] {
-      auto loaded = load_configuration(arguments);
+      auto loaded = load();
       check_source(loaded->vision);
       check_paths(arguments, loaded->setup.read);
       return loaded;
@@ -332,6 +329,7 @@ int run_command(const RunArguments& arguments) {
           tell(fmt::format("frame {}: a changed configuration is refused, the former one goes on: {}\n", frame->index,
                            news->refusal));
         }
+        std::fflush(report);  // somebody waits for it
       }
       const Vision& vision = configuration->vision;
       vision.check_frames(name_of(*frame, name), frame->view.width(), frame->view.height(), frame->range);
