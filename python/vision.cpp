@@ -86,7 +86,7 @@ py::dict see(PythonVision& self, const Frame& frame) {
   {
     py::gil_scoped_release unlocked;
     const std::lock_guard only(self.mutex);
-    self.workspace.belief.reset();  // each frame by itself, whichever thread brings it
+    self.workspace.history.clear();  // each frame by itself, whichever thread brings it
     line = to_json_line(self.vision(frame, self.workspace));
   }
   return py::module_::import("json").attr("loads")(line);

@@ -57,6 +57,15 @@ class Run(ProgramTest):
                 self.assertIsNotNone(scene["free_space"])
                 self.assertGreaterEqual(scene["timing_ms"]["total"], 0)
 
+    def test_the_ball_stays_the_same_ball(self):
+        for recording in RECORDINGS:
+            for scene in self.scenes(f"{recording}.jsonl"):
+                if not scene["balls"]:
+                    continue
+                track = scene["tracks"][0]
+                self.assertEqual((track["kind"], track["id"], track["age"]), ("ball", 1, 0))
+                self.assertLess(abs(track["x"] - scene["balls"][0]["x"]) + abs(track["y"] - scene["balls"][0]["y"]), .05)
+
     def test_sees_what_is_there(self):
         pairs = [path for r in RECORDINGS for path in (DATA / r / "gt.jsonl", f"{r}.jsonl")]
         colors = [path for r in RECORDINGS for path in ("--colors", DATA / r / "labels", f"maps/{r}")]

@@ -18,6 +18,7 @@ except ImportError:
 SCHEMA = pathlib.Path(__file__).resolve().parent.parent / "schema/scene.schema.json"
 SCENES = 12  # every seed of the scenes leaves out something else
 OPTIONAL = {("image",)}
+FORGIVEN = {"tracks missing"}  # by the reader: lines from before there were tracks are read as well
 
 
 def places(value, path=()):
@@ -89,7 +90,8 @@ def main():
     answers = subprocess.run([program], input=lines, capture_output=True, check=True, text=True).stdout.splitlines()
     if len(answers) != len(cases):
         faults.append(f"{len(answers)} answers to {len(cases)} lines")
-    faults += [f"{what}: the reader accepts it" for (what, _), answer in zip(cases, answers) if answer == "ok"]
+    faults += [f"{what}: the reader accepts it" for (what, _), answer in zip(cases, answers)
+               if answer == "ok" and what.split(", ", 1)[1] not in FORGIVEN]
 
     print("\n".join(faults[:40] + [f"{len(scenes)} scenes, {len(cases)} spoiled ones, {len(faults)} faults"]))
     return 1 if faults or len(cases) < 500 else 0

@@ -22,11 +22,17 @@ namespace {
 
 using test::allocations;
 
-class SteadyState : public testing::TestWithParam<std::pair<const char*, const char*>> {};
+struct Case {
+  const char* recording;
+  const char* samples;
+  const char* localization;
+};
+class SteadyState : public testing::TestWithParam<Case> {};
 
 TEST_P(SteadyState, AllocatesNothingPerFrame) {
-  const test::Recording recording = test::load_recording(GetParam().first, GetParam().second);
+  test::Recording recording = test::load_recording(GetParam().recording, GetParam().samples);
   ASSERT_FALSE(recording.frames.empty());
+  recording.setup.options.stages["localization"] = GetParam().localization;
   const Vision vision(recording.setup);
   VisionWorkspace workspace;
   std::size_t seen = 0;
@@ -44,10 +50,13 @@ TEST_P(SteadyState, AllocatesNothingPerFrame) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Recordings, SteadyState,
-                         testing::Values(std::pair("d01_approach", "train_div/samples.yaml"),
-                                         std::pair("d05_distract", "train_div/samples.yaml"),
-                                         std::pair("d06_vga", "train_vga/samples.yaml")),
-                         [](const auto& row) { return std::string(row.param.first); });
+                         testing::Values(Case{"d01_approach", "train_div/samples.yaml", "model"},
+                                         Case{"d01_approach", "train_div/samples.yaml", "boundary"},
+                                         Case{"d05_distract", "train_div/samples.yaml", "model"},
+                                         Case{"d06_vga", "train_vga/samples.yaml", "model"}),
+                         [](const auto& row) {
+                           return std::string(row.param.recording) + "_" + row.param.localization;
+                         });
 
 /// How many skeleton lines, borders and edges a frame has.
 std::size_t thin_lines(const Frame& frame, const Segmentation& segmentation) {

@@ -19,6 +19,7 @@ fi
 # one NAME: all recordings with what the functions below say, pooled.
 odometry() { echo "--odometry $folder/odometry.jsonl"; }
 every=1
+way="localization: model"
 robot() { cat "$folder/robot.yaml"; }
 one() {
   local pairs=()
@@ -28,6 +29,7 @@ one() {
     name=$(basename "$folder")
     camera=$(sed -n 's/^colors: .*colors_\(.*\)\.yaml$/\1/p' "$folder/robot.yaml")
     robot | sed "s|^camera: .*|camera: $folder/camera.yaml|" >"$out/$1/$name.yaml"
+    echo "vision: {$way}" >>"$out/$1/$name.yaml"
     # shellcheck disable=SC2046
     "$tassilo" run --quiet --robot "$out/$1/$name.yaml" --colors "$out/colors_$camera.yaml" --source "$folder/video.mkv" \
       $(odometry) --every "$every" --output "$out/$1/$name.jsonl"
@@ -35,17 +37,24 @@ one() {
     pairs+=("$out/$1/$name.gt.jsonl" "$out/$1/$name.jsonl")
   done
   printf '\n%s\n' "$1"
-  "$tassilo" eval "${pairs[@]}" --json "$out/$1.json" | sed -n '/^pose/,/normalized/p'
+  "$tassilo" eval "${pairs[@]}" --json "$out/$1.json" | sed -n -e '/^pose/,/normalized/p' -e '/ total /p'
+}
+longer() {
+  awk -F'[:,}]' '{printf "{\"t\":%s,\"x\":%.6f,\"y\":%.6f,\"theta\":%s}\n", $2, 1.2 * $4, 1.2 * $6, $8}' "$folder/odometry.jsonl" >"$out/longer.jsonl"
+  echo "--odometry $out/longer.jsonl"
+}
+# each PREFIX: what goes wrong on real robots, one after the other.
+each() {
+  one "$1as_given"
+  (odometry() { :; }; one "$1without_odometry")
+  (odometry() { longer; }; one "$1odometry_20_percent_long")
+  (every=2; one "$1every_other_frame")
+  (robot() { grep -v '^start_pose' "$folder/robot.yaml"; }; one "$1without_start_pose")
 }
 
-one as_given
-(odometry() { :; }; one without_odometry)
-(odometry() {
-  awk -F'[:,}]' '{printf "{\"t\":%s,\"x\":%.6f,\"y\":%.6f,\"theta\":%s}\n", $2, 1.2 * $4, 1.2 * $6, $8}' "$folder/odometry.jsonl" >"$out/scaled.jsonl"
-  echo "--odometry $out/scaled.jsonl"
-}; one odometry_20_percent_long)
-(every=2; one every_other_frame)
-(robot() { grep -v '^start_pose' "$folder/robot.yaml"; }; one without_start_pose)
+each ""
+(way="localization: boundary, field_boundary: skeleton"; each skeleton_)
+(way="localization: boundary, field_boundary: subpixel"; each subpixel_)
 
 if [ -d "$data/ssl_onboard" ]; then
   printf '\nssl_onboard: each image from 50 starts, 30 cm and 15 degrees off\n'

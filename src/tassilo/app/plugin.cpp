@@ -1,11 +1,14 @@
 #include "tassilo/app/plugin.h"
 
 #include <dlfcn.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cstddef>
 #include <exception>
 #include <filesystem>
+#include <map>
+#include <mutex>
 #include <vector>
 
 #include "tassilo/base/error.h"
@@ -21,11 +24,50 @@ struct Plugin {
   decltype(&tassilo_register) add = nullptr;
 };
 
-/// What dlopen has against a file, without its name.
-std::string load_fault(const std::string& path) {
-  const char* const said = dlerror();
-  const std::string text = said != nullptr ? said : "for an unknown reason";
-  return text.starts_with(path + ": ") ? text.substr(path.size() + 2) : text;
+/// A file that was loaded.
+struct LoadedFile {
+  dev_t device;
+  ino_t number;
+  timespec written;
+
+  bool is(const struct stat& file) const { return device == file.st_dev && number == file.st_ino; }
+  bool is_written_over(const struct stat& file) const {
+    return written.tv_sec != file.st_mtim.tv_sec || written.tv_nsec != file.st_mtim.tv_nsec;
+  }
+};
+
+/// dlopen knows a library by the name it was asked for, and does not look whether the name leads to another file by
+/// now; so every file that one path has led to gets a spelling of its own, "folder/././name".
+std::string spelling_of(const fs::path& path, std::ptrdiff_t count) {
+  fs::path spelling = path.parent_path();
+  for (std::ptrdiff_t i = 0; i < count; ++i) spelling /= ".";
+  return (spelling / path.filename()).string();
+}
+
+void* library_of(const std::string& file) {
+  static std::mutex mutex;
+  static std::map<fs::path, std::vector<LoadedFile>> loaded;
+  // Absolute: of a bare name dlopen would search the system's libraries.
+  const fs::path path = fs::absolute(file);
+  struct stat found {};
+  if (stat(path.c_str(), &found) != 0) throw Error(file, "does not exist");
+  const std::lock_guard lock(mutex);
+  std::vector<LoadedFile>& files = loaded[path];
+  const auto known = std::ranges::find_if(files, [&](const LoadedFile& one) { return one.is(found); });
+  if (known != files.end() && known->is_written_over(found))
+    throw Error(file, "was written over while in use, must be replaced by another file, as linkers and mv do");
+  const std::string spelling = spelling_of(path, known - files.begin());
+  // Local, so that libraries do not see each other. The program exports its functions, and what both have, as the pools
+  // of recycled memory, is the program's.
+  void* const library = dlopen(spelling.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (library == nullptr) {
+    const char* const said = dlerror();
+    std::string text = said != nullptr ? said : "for an unknown reason";
+    if (text.starts_with(spelling + ": ")) text.erase(0, spelling.size() + 2);
+    throw Error(file, "cannot be loaded as a shared library: " + text);
+  }
+  if (known == files.end()) files.push_back({found.st_dev, found.st_ino, found.st_mtim});
+  return library;
 }
 
 template <class Function>
@@ -35,15 +77,7 @@ Function* function_of(void* library, const char* name) {
 
 /// Loads the library and checks that it fits the program before it is let at any type of it.
 Plugin open_plugin(const std::string& file) {
-  std::error_code ignored;
-  if (!fs::exists(file, ignored)) throw Error(file, "does not exist");
-  // An absolute path: of a bare name dlopen would search the system's libraries.
-  const std::string path = fs::absolute(file).string();
-  // Local, so that libraries do not see each other. The program exports its functions, and what both have, as the pools
-  // of recycled memory, is the program's.
-  void* const library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (library == nullptr) throw Error(file, "cannot be loaded as a shared library: " + load_fault(path));
-
+  void* const library = library_of(file);
   const auto built_for = function_of<decltype(tassilo_built_for)>(library, "tassilo_built_for");
   const auto add = function_of<decltype(tassilo_register)>(library, "tassilo_register");
   if (built_for == nullptr || add == nullptr)

@@ -12,7 +12,7 @@ namespace tassilo {
 /// file that its user did not name.
 ///
 /// A loaded library stays until the program ends: the registry, every Vision made from it, and exceptions on their way
-/// hold functions of it. So a file that was built anew while the program runs is not seen before the next start.
+/// hold functions of it. A file that took the place of a loaded one is loaded beside it.
 ///
 /// Throws Error naming the file that does not exist, is no library for this program, throws, registers nothing, takes
 /// names that are taken, or changes the alternatives of others.

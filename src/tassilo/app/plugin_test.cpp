@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -89,6 +90,27 @@ TEST(Plugins, OfAnotherVersionAreRefused) {
       message_of(TEST_PLUGIN_OF_ANOTHER_VERSION),
       testing::StartsWith(TEST_PLUGIN_OF_ANOTHER_VERSION
                           ": was built for 'tassilo 0.0.1 by gcc 4', this is 'tassilo " TASSILO_VERSION " by "));
+}
+
+// A library that was built anew while the program runs: dlopen alone would give the one that it has by this name.
+TEST(Plugins, WrittenAnewAreLoadedAnew) {
+  const fs::path folder = testing::TempDir() + "tassilo_plugin_" + std::to_string(getpid());
+  fs::create_directory(folder);
+  const std::string file = folder / "plugin.so";
+  const auto replace_by = [&](const std::string& other) {
+    fs::copy_file(other, folder / "new");
+    fs::rename(folder / "new", file);
+  };
+  for (int again = 0; again < 2; ++again) {
+    replace_by(kPlugin);
+    EXPECT_EQ(message_of(file), "no error");
+    replace_by(TEST_PLUGIN_OF_ANOTHER_VERSION);
+    EXPECT_THAT(message_of(file), testing::HasSubstr("was built for 'tassilo 0.0.1 by gcc 4'"));
+  }
+  fs::last_write_time(file, fs::last_write_time(file) + std::chrono::seconds(1));
+  EXPECT_EQ(message_of(file),
+            file + ": was written over while in use, must be replaced by another file, as linkers and mv do");
+  fs::remove_all(folder);
 }
 
 TEST(Plugins, ThatRegisterWhatTheyMustNotAreRefused) {

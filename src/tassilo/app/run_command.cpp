@@ -16,6 +16,7 @@
 
 #include "tassilo/app/boundary_steps.h"
 #include "tassilo/app/commands.h"
+#include "tassilo/app/configuration_watch.h"
 #include "tassilo/app/robot_setup.h"
 #include "tassilo/app/run_summary.h"
 #include "tassilo/app/written_files.h"
@@ -41,6 +42,7 @@ struct RunArguments {
   double fps = 0;
   int every = 1;
   int threads = 1;
+  bool watch = false;
   bool quiet = false;
 };
 
@@ -160,9 +162,12 @@ class Progress {
     }
     fmt::print(stderr, "{}  {:.1f} frames/s   ", text, rate);
   }
-  /// Gives the line back to other messages.
-  void finish() {
+  /// Gives the line back to other messages, for a while.
+  void clear() const {
     if (shown_) std::fprintf(stderr, "\r%78s\r", "");
+  }
+  void finish() {
+    clear();
     shown_ = false;
   }
   Progress(const Progress&) = delete;
@@ -250,10 +255,13 @@ std::optional<Odometry> load_odometry(const std::string& file) {
 
 int run_command(const RunArguments& arguments) {
   using Clock = std::chrono::steady_clock;
-  RobotSetup setup = read_robot_setup(arguments.robot, arguments.colors, arguments.plugins);
-  if (arguments.start) setup.vision.start_pose = gaussian_of(*arguments.start);
-  check_paths(arguments, setup.read);
-  const Vision vision(setup.vision, setup.registry);
+  const auto load = [&] {
+    return load_configuration(arguments.robot, arguments.colors, arguments.plugins, [&](RobotSetup& setup) {
+      if (arguments.start) setup.vision.start_pose = gaussian_of(*arguments.start);
+    });
+  };
+  std::shared_ptr<const Configuration> configuration = load();
+  check_paths(arguments, configuration->setup.read);
   const std::optional<Odometry> odometry = load_odometry(arguments.odometry);
   // Nothing but scene lines may go where scene lines go.
   std::FILE* report = arguments.output == "-" ? stderr : stdout;
@@ -264,7 +272,7 @@ int run_command(const RunArguments& arguments) {
   SourceOptions source_options;
   source_options.location = arguments.source;
   source_options.raw = arguments.raw;
-  source_options.images_range = setup.vision.colors.range;
+  source_options.images_range = configuration->setup.vision.colors.range;
   source_options.fps = arguments.fps;
   source_options.threads = arguments.threads;
   source_options.interrupted = [] { return interrupted.load(); };
@@ -279,7 +287,10 @@ int run_command(const RunArguments& arguments) {
   }
   FrameSource& source = *opened;
   const std::string name = source.info().name;
-  vision.check_frames(name, source.info().width, source.info().height, source.info().range);
+  const auto check_source = [&](const Vision& vision) {
+    vision.check_frames(name, source.info().width, source.info().height, source.info().range);
+  };
+  check_source(configuration->vision);
   tell(fmt::format("{}: {}\n", name, source.info().description));
 
   Sinks sinks(arguments);
@@ -290,6 +301,14 @@ int run_command(const RunArguments& arguments) {
   Progress progress(!arguments.quiet, source.info().frame_count);
   std::optional<Error> damage;
   std::int64_t read = 0, done = 0;
+  std::optional<ConfigurationWatch> watch;
+  if (arguments.watch)
+    watch.emplace(*configuration, [&] {
+      auto loaded = load();
+      check_source(loaded->vision);
+      check_paths(arguments, loaded->setup.read);
+      return loaded;
+    });
   const auto begin = Clock::now();
   try {
     while (!interrupted) {
@@ -298,9 +317,26 @@ int run_command(const RunArguments& arguments) {
       if (!frame) break;
       if (read++ % arguments.every != 0) continue;
       const double decode_ms = ms_between(before, Clock::now());
+      RecycledString changes;
+      if (auto news = watch ? watch->news() : std::nullopt) {
+        progress.clear();
+        if (news->configuration) {
+          configuration = std::move(news->configuration);
+          changes = "a changed one was taken over";
+          tell(fmt::format("frame {}: the changed configuration is taken over\n", frame->index));
+        }
+        if (!news->refusal.empty()) {
+          changes.append(changes.empty() ? "" : "; ").append("refused, the former one goes on: ").append(news->refusal);
+          tell(fmt::format("frame {}: a changed configuration is refused, the former one goes on: {}\n", frame->index,
+                           news->refusal));
+        }
+        std::fflush(report);  // somebody waits for it
+      }
+      const Vision& vision = configuration->vision;
       vision.check_frames(name_of(*frame, name), frame->view.width(), frame->view.height(), frame->range);
       Scene scene = vision(*frame, workspace, odometry ? &*odometry : nullptr);
       scene.timing.insert(scene.timing.begin(), {"decode", decode_ms});
+      if (!changes.empty()) scene.why.emplace_back("configuration", std::move(changes));
       if (odometry) {
         const bool known = odometry->at(frame->t).has_value();
         summary.add_odometry(known);
@@ -359,10 +395,14 @@ Command add_run(CLI::App& program) {
   command->add_option("--every", arguments->every, "look at every N-th frame only, as if the others had been lost")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
+  command->add_flag("--watch", arguments->watch,
+                    "take changes of the robot file, and of the files it names, over between two frames");
   command->add_flag("-q,--quiet", arguments->quiet, "print nothing but errors");
   command->callback([arguments] {
     if (!arguments->overlay_step.empty() && arguments->overlay.empty())
       throw CLI::ValidationError("--overlay-step", "says what is drawn, --overlay is missing");
+    if (arguments->watch && arguments->robot.empty())
+      throw CLI::ValidationError("--watch", "watches the robot file, --robot is missing");
     arguments->raw = raw_format(*arguments);
     arguments->start = start_pose_from(arguments->start_pose);
   });

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <utility>
@@ -64,6 +65,14 @@ void expect_no_far(const Map& map) {
   if (!map.at("far").is_null()) map.at("far").fail("is not null, must be like x");
 }
 
+template <std::size_t N>
+std::array<double, N> covariance_of(const Value& value) {
+  const auto numbers = value.numbers(N);
+  std::array<double, N> covariance;
+  std::ranges::copy(numbers, covariance.begin());
+  return covariance;
+}
+
 PoseSeen pose_of(const Value& value) {
   constexpr std::array kKinds{PoseKind::two_lines, PoseKind::one_line, PoseKind::predicted,
                               PoseKind::goal,      PoseKind::model,    PoseKind::start};
@@ -72,8 +81,7 @@ PoseSeen pose_of(const Value& value) {
   pose.x = map.at("x").number();
   pose.y = map.at("y").number();
   pose.theta = map.at("theta").number();
-  const auto covariance = map.at("cov").numbers(pose.covariance.size());
-  std::copy(covariance.begin(), covariance.end(), pose.covariance.begin());
+  pose.covariance = covariance_of<9>(map.at("cov"));
   pose.kind = enum_of(map.at("kind"), kKinds);
   pose.age = map.at("age").number(0);
   pose.mirror = map.at("mirror").boolean();
@@ -162,9 +170,24 @@ FreeSpace free_space_of(const Value& value) {
   return space;
 }
 
+TrackSeen track_of(const Value& value) {
+  const Map map = value.map({"id", "kind", "team", "x", "y", "vx", "vy", "cov", "age"});
+  TrackSeen track;
+  track.id = static_cast<int>(map.at("id").integer(1, std::numeric_limits<int>::max()));
+  track.kind = enum_of(map.at("kind"), std::array{TrackKind::ball, TrackKind::robot});
+  track.team = enum_of(map.at("team"), std::array{Team::cyan, Team::magenta, Team::unknown});
+  track.x = map.at("x").number();
+  track.y = map.at("y").number();
+  track.vx = map.at("vx").number();
+  track.vy = map.at("vy").number();
+  track.covariance = covariance_of<16>(map.at("cov"));
+  track.age = map.at("age").number(0);
+  return track;
+}
+
 Scene scene_of(const Value& root) {
-  const Map map =
-      root.map({"frame", "t", "image", "pose", "balls", "goals", "robots", "lines", "free_space", "why", "timing_ms"});
+  const Map map = root.map(
+      {"frame", "t", "image", "pose", "balls", "goals", "robots", "lines", "free_space", "tracks", "why", "timing_ms"});
   Scene scene;
   scene.frame = map.at("frame").integer(0);
   scene.t = map.at("t").number();
@@ -175,6 +198,9 @@ Scene scene_of(const Value& root) {
   for (const Value& robot : map.at("robots").list()) scene.robots.push_back(robot_of(robot));
   for (const Value& line : map.at("lines").list()) add_line(line, scene);
   if (const Value space = map.at("free_space"); !space.is_null()) scene.free_space = free_space_of(space);
+  // Lines from before there were tracks are read as well.
+  if (const auto tracks = map.find("tracks"))
+    for (const Value& track : tracks->list()) scene.tracks.push_back(track_of(track));
   for (const auto& [subject, reason] : map.at("why").any_map().entries())
     scene.why.emplace_back(subject, std::string_view(reason.string()));
   const Map timing = map.at("timing_ms").any_map();

@@ -103,6 +103,20 @@ TEST(SceneJson, RoundTrip) {
       for (std::size_t i = 0; i < scene.free_space->ranges.size(); ++i)
         EXPECT_NEAR(read.free_space->ranges[i], scene.free_space->ranges[i], kMetric);
     }
+    ASSERT_EQ(read.tracks.size(), scene.tracks.size());
+    for (std::size_t i = 0; i < scene.tracks.size(); ++i) {
+      const TrackSeen &a = read.tracks[i], &b = scene.tracks[i];
+      EXPECT_EQ(a.id, b.id);
+      EXPECT_EQ(a.kind, b.kind);
+      EXPECT_EQ(a.team, b.team);
+      EXPECT_NEAR(a.x, b.x, kMetric);
+      EXPECT_NEAR(a.y, b.y, kMetric);
+      EXPECT_NEAR(a.vx, b.vx, kMetric);
+      EXPECT_NEAR(a.vy, b.vy, kMetric);
+      EXPECT_NEAR(a.age, b.age, kMetric);
+      for (std::size_t k = 0; k < 16; ++k)
+        EXPECT_NEAR(a.covariance[k], b.covariance[k], 1e-8 * std::abs(b.covariance[k]));
+    }
     EXPECT_EQ(read.why, scene.why);
     ASSERT_EQ(read.timing.size(), scene.timing.size());
     EXPECT_EQ(read.timing.back().stage, "total");
@@ -114,7 +128,16 @@ TEST(SceneJson, NothingSeenIsEmptyListsAndNull) {
   scene.timing = {{"total", 1.5}};
   EXPECT_EQ(
       to_json_line(scene),
-      R"({"frame":0,"t":0.0,"pose":null,"balls":[],"goals":[],"robots":[],"lines":[],"free_space":null,"why":{},"timing_ms":{"total":1.5}})");
+      R"({"frame":0,"t":0.0,"pose":null,"balls":[],"goals":[],"robots":[],"lines":[],"free_space":null,"tracks":[],"why":{},"timing_ms":{"total":1.5}})");
+}
+
+TEST(SceneJson, LinesFromBeforeThereWereTracksAreRead) {
+  Scene scene;
+  scene.timing = {{"total", 1.5}};
+  std::string line = to_json_line(scene);
+  const std::string tracks = R"("tracks":[],)";
+  ASSERT_NE(line.find(tracks), std::string::npos);
+  EXPECT_TRUE(scene_from_json(line.erase(line.find(tracks), tracks.size())).tracks.empty());
 }
 
 TEST(SceneJson, WithoutACameraFloorValuesAreNull) {
@@ -188,9 +211,10 @@ TEST(SceneJson, MalformedLinesAreRefused) {
       {R"("frame":0)", R"("frame":-1)", "frame is '-1', must be >= 0"},
       {R"("frame":0,)", "", "key 'frame' is missing"},
       {R"("t":0.5)", R"("t":null)", "t is empty, must be a finite number"},
-      {R"("t":0.5)", R"("t":0.5,"tracks":[])",
-       "unknown key 'tracks', must be frame, t, image, pose, balls, goals, robots, lines, free_space, why or "
+      {R"("t":0.5)", R"("t":0.5,"history":[])",
+       "unknown key 'history', must be frame, t, image, pose, balls, goals, robots, lines, free_space, tracks, why or "
        "timing_ms"},
+      {R"("t":0.5)", R"("t":0.5,"tracks":[{"id":0}])", "tracks[0].id is '0', must be >= 1 and <= 2147483647"},
       {R"("x":1,)", R"("x":null,)", "balls[0].y is not null, must be like x"},
       {R"("near":1,)", R"("near":null,)", "balls[0].near is null, must be like x"},
       {R"("cov":[1,0,0,1])", R"("cov":[1,0,0])", "balls[0].cov has 3 values, must have 4"},

@@ -53,12 +53,18 @@ void add_floor_point(Json& out, const FloorPoint* point, const DistanceBounds& b
   if (!unbounded) out["far"] = metric(bounds.far);
 }
 
+template <std::size_t N>
+Json json_of(const std::array<double, N>& covariance) {
+  Json list = Json::array();
+  for (const double value : covariance) list.push_back(variance(value));
+  return list;
+}
+
 Json json_of(const std::optional<PoseSeen>& pose) {
   if (!pose) return nullptr;
-  Json covariance = Json::array();
-  for (const double value : pose->covariance) covariance.push_back(variance(value));
-  return {{"x", metric(pose->x)},  {"y", metric(pose->y)},          {"theta", metric(pose->theta)},
-          {"cov", covariance},     {"kind", to_string(pose->kind)}, {"age", metric(pose->age)},
+  return {{"x", metric(pose->x)},          {"y", metric(pose->y)},
+          {"theta", metric(pose->theta)},  {"cov", json_of(pose->covariance)},
+          {"kind", to_string(pose->kind)}, {"age", metric(pose->age)},
           {"mirror", pose->mirror}};
 }
 
@@ -126,6 +132,18 @@ Json json_of(const std::optional<FreeSpace>& space) {
           {"state", states}};
 }
 
+Json json_of(const TrackSeen& track) {
+  return {{"id", track.id},
+          {"kind", to_string(track.kind)},
+          {"team", to_string(track.team)},
+          {"x", metric(track.x)},
+          {"y", metric(track.y)},
+          {"vx", metric(track.vx)},
+          {"vy", metric(track.vy)},
+          {"cov", json_of(track.covariance)},
+          {"age", metric(track.age)}};
+}
+
 template <class T>
 Json list_of(const RecycledVector<T>& values) {
   Json list = Json::array();
@@ -166,6 +184,7 @@ std::string to_json_line(const Scene& scene) {
   out["robots"] = list_of(scene.robots);
   out["lines"] = lines_of(scene);
   out["free_space"] = json_of(scene.free_space);
+  out["tracks"] = list_of(scene.tracks);
   out["why"] = why_of(scene);
   out["timing_ms"] = timing_of(scene);
   // A file name may be no UTF-8; a scene is not lost for that.

@@ -37,6 +37,7 @@ class BirdDrawing {
       if (robot.floor) this->robot(robot.team, *robot.floor);
     for (std::size_t i = scene.balls.size(); i-- > 0;)
       if (scene.balls[i].floor) ball(*scene.balls[i].floor, i == 0);
+    for (const TrackSeen& track : scene.tracks) this->track(track);
     self();
     ring_labels();
   }
@@ -171,6 +172,19 @@ class BirdDrawing {
     canvas_.stroke_circle(at(robot.center), radius, {.ink = color, .width = 1.6 * unit_});
     bracket(robot.nearest.mean, robot.bounds, color.with_alpha(.7));
     canvas_.fill_circle(at(robot.nearest.mean), 2.6 * unit_, color);
+  }
+
+  /// Where it comes in a moment, and its number; a dashed ring where it is remembered only.
+  void track(const TrackSeen& track) const {
+    const FloorPoint place{track.x, track.y};
+    const CanvasPoint middle = at(place);
+    const Ink color = track_ink(track);
+    const double radius = track.kind == TrackKind::ball ? 5 * unit_ : .2 * px_per_m_;
+    if (track.age > 0) canvas_.stroke_circle(middle, radius, {.ink = color, .width = 1.3 * unit_, .dashed = true});
+    canvas_.arrow(middle, at(place + kArrowTime * FloorPoint{track.vx, track.vy}),
+                  {.ink = color, .width = 1.6 * unit_});
+    canvas_.text(number_text(track.id), {middle.x - radius - 3 * unit_, middle.y}, TextAnchor::right,
+                 {.size = 9.5 * unit_, .ink = color});
   }
 
   void self() const {

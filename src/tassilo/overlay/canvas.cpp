@@ -131,6 +131,17 @@ void Canvas::polyline(std::span<const CanvasPoint> points, const Pen& pen) {
   stroke(pen);
 }
 
+void Canvas::arrow(CanvasPoint from, CanvasPoint to, const Pen& pen) {
+  const CanvasPoint along = to - from;
+  const double length = norm(along);
+  if (!(length > 0)) return;
+  const CanvasPoint back = (-std::min(3.5 * pen.width, length / 2) / length) * along, aside{-back.y, back.x};
+  cairo_new_path(cairo_.get());
+  for (const CanvasPoint& p : {from, to, to + back + .7 * aside, to, to + back - .7 * aside})
+    cairo_line_to(cairo_.get(), p.x, p.y);
+  stroke(pen);
+}
+
 void Canvas::polygons_path(std::span<const std::vector<CanvasPoint>> polygons) {
   cairo_new_path(cairo_.get());
   for (const std::vector<CanvasPoint>& polygon : polygons) {

@@ -124,6 +124,8 @@ class ImageDrawing {
     for (const RobotSeen& robot : scene.robots)
       box(robot.box, {.ink = team_ink(robot.team), .width = 2 * unit_, .cased = true});
     for (std::size_t i = scene.balls.size(); i-- > 0;) ball(scene.balls[i], i == 0);
+    if (options.camera != nullptr)
+      for (const TrackSeen& track : scene.tracks) this->track(track, *options.camera);
 
     for (const Ball& ball : scene.balls) {
       const bool is_best = &ball == &scene.balls.front();
@@ -175,6 +177,22 @@ class ImageDrawing {
     labels_.keep_free(on_image(ball.box));
     canvas_.stroke_circle(center, ball.radius_px * layout_.scale,
                           {.ink = kTextInk.with_alpha(.9), .width = 1.2 * unit_});
+  }
+
+  /// On the floor: where it comes in a moment, and its number; a dashed ring where it is remembered only.
+  void track(const TrackSeen& track, const MountedCamera& camera) {
+    const auto on_image = [&](double time) {
+      return camera.project({track.x + time * track.vx, track.y + time * track.vy, 0});
+    };
+    const auto now = on_image(0), soon = on_image(kArrowTime);
+    if (!now || !soon) return;
+    const CanvasPoint place = on_canvas(*now, layout_.scale);
+    const Ink color = track_ink(track);
+    if (track.age > 0)
+      canvas_.stroke_circle(place, .5 * layout_.text, {.ink = color, .width = 1.4 * unit_, .dashed = true});
+    canvas_.arrow(place, on_canvas(*soon, layout_.scale), {.ink = color, .width = 1.8 * unit_, .cased = true});
+    canvas_.text(number_text(track.id), {place.x, place.y + .9 * layout_.text}, TextAnchor::center,
+                 {.size = .85 * layout_.text, .ink = color, .weight = TextWeight::bold});
   }
 
   void label(const PixelBox& pixels, const std::string& words, Ink color) {

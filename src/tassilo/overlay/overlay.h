@@ -40,8 +40,9 @@ struct OverlayOptions {
 ///
 /// On the image, enlarged by a whole number: the free floor in green with a red edge where something blocks it, lines
 /// (white; field boundary violet), goals, robots and balls as boxes in their color with distance, bearing or
-/// confidence; further ball hypotheses thinner. Below it a line with frame number, time and total processing time. View
-/// from above: rings of 1 m around the robot (x up, y left), free space (unseen sectors grey), ball with 2-sigma
+/// confidence; further ball hypotheses thinner; the numbers of tracks, where they come within half a second, and a
+/// dashed ring around those not seen in this frame. Below it a line with frame number, time and total processing time.
+/// View from above: rings of 1 m around the robot (x up, y left), free space (unseen sectors grey), ball with 2-sigma
 /// ellipse and bracket from near to far, robots, goals, lines. The size depends on the frame's size and the options
 /// only, so that pictures of a sequence make a video; both sides are even. `options.labels` has width * height entries
 /// or none, `options.surface` the size of the frame. A few milliseconds; safe from any thread.

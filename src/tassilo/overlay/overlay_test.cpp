@@ -255,6 +255,27 @@ TEST(DrawOverlay, BirdViewHasXUpAndYLeft) {
   EXPECT_NEAR(left.second, right.second, 2);
 }
 
+// An arrow from where it is to where it comes in half a second, on the floor and from above.
+TEST(DrawOverlay, TracksShowWhereTheyCome) {
+  const MountedCamera camera = level_camera();
+  Scene scene;
+  scene.tracks = {TrackSeen{.id = 1, .team = Team::unknown, .x = 2, .y = .6, .vx = 0, .vy = -2.4}};
+  const auto is_orange = [](const Rgb& color) { return color[0] > 150 && color[0] > color[2] + 80; };
+  const Picture picture = drawn(scene, {.camera = &camera, .scale = 2});
+  for (const double y : {.5, .2, -.2, -.5}) {
+    const CanvasPoint p = on_canvas(camera.project({2, y, 0}).value(), 2);
+    EXPECT_TRUE(is_orange(at(picture, static_cast<int>(p.x), static_cast<int>(p.y)))) << y;
+  }
+  const CanvasPoint behind = on_canvas(camera.project({2, .8, 0}).value(), 2);
+  EXPECT_EQ(at(picture, static_cast<int>(behind.x), static_cast<int>(behind.y)), kGray);
+  int above = 0;
+  for (int r = 0; r < 240; ++r)
+    for (int c = 400; c < picture.width; ++c) above += is_orange(at(picture, c, r));
+  EXPECT_GT(above, 10);
+  const Picture without = drawn(scene, {.scale = 2});
+  EXPECT_EQ(without, drawn({}, {.scale = 2}));
+}
+
 TEST(DrawOverlay, LabelMapTintsItsPixels) {
   std::vector<std::uint8_t> labels(200 * 120, 0);
   for (int c = 0; c < 100; ++c) labels[static_cast<std::size_t>(60 * 200 + c)] = 7;  // red
@@ -285,6 +306,9 @@ TEST(DrawOverlay, OddScenesAreDrawn) {
   scene.goals.resize(1);
   scene.goals[0].posts.resize(2);
   scene.lines.resize(1);
+  scene.tracks.resize(3);
+  scene.tracks[1].vx = 1e9;
+  scene.tracks[2].age = 1e9;
   scene.circles = {{.center = {1, 1}, .radius = 1e5}};
   scene.free_space = quarter(100, SectorState::free);
   scene.free_space->angle_increment = 1;

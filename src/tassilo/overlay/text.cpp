@@ -18,6 +18,8 @@ std::string fixed(double value, int decimals) {
 std::string meters(double value) { return fixed(value, 2) + " m"; }
 std::string percent(double fraction) { return fixed(100 * fraction, 0) + " %"; }
 
+std::string number_text(int id) { return std::string("#").append(std::to_string(id)); }
+
 std::string joined(std::initializer_list<std::string> parts) {
   std::string all;
   for (const std::string& part : parts) {

@@ -5,6 +5,7 @@ namespace tassilo {
 std::string_view to_string(GoalColor color) { return color == GoalColor::yellow ? "yellow" : "blue"; }
 std::string_view to_string(PostSide side) { return side == PostSide::left ? "left" : "right"; }
 std::string_view to_string(LineKind kind) { return kind == LineKind::line ? "line" : "boundary"; }
+std::string_view to_string(TrackKind kind) { return kind == TrackKind::ball ? "ball" : "robot"; }
 
 std::string_view to_string(Team team) {
   switch (team) {

@@ -94,6 +94,21 @@ struct PoseSeen {
   bool mirror = false;  ///< The point-mirrored pose is as likely.
 };
 
+enum class TrackKind { ball, robot };
+/// An object followed over time, as it is at the frame's time, seen or not.
+///
+/// The velocity is over the floor, that of the object relative to the field, expressed in the robot's axes: a ball that
+/// lies still has none however the robot drives and turns.
+struct TrackSeen {
+  int id = 0;  ///< The same for one object as long as it is followed; > 0 and never given twice.
+  TrackKind kind = TrackKind::ball;
+  Team team = Team::unknown;            ///< Of a robot, by most of its sightings.
+  double x = 0, y = 0;                  ///< Of the ball's floor point, of the robot's middle; robot frame. [m]
+  double vx = 0, vy = 0;                ///< [m/s]
+  std::array<double, 16> covariance{};  ///< Row-major x, y, vx, vy.
+  double age = 0;                       ///< Since it was last seen; 0: in this frame. [s]
+};
+
 /// Duration of each stage. [ms]
 struct StageTime {
   std::string stage;
@@ -111,6 +126,7 @@ struct Scene {
   RecycledVector<LineSeen> lines;
   RecycledVector<CircleSeen> circles;
   std::optional<FreeSpace> free_space;
+  RecycledVector<TrackSeen> tracks;  ///< Balls first, most often seen first; then robots by id.
   RecycledVector<std::pair<std::string, RecycledString>> why;  ///< Subject -> short reason of acceptance or refusal.
   RecycledVector<StageTime> timing;                            ///< In the order they ran; "total" last.
 };
@@ -121,5 +137,6 @@ std::string_view to_string(PostSide side);
 std::string_view to_string(LineKind kind);
 std::string_view to_string(SectorState state);
 std::string_view to_string(PoseKind kind);
+std::string_view to_string(TrackKind kind);
 
 }  // namespace tassilo

@@ -27,6 +27,7 @@ RobotMotion robot_motion(const Odometry* odometry, double from, double to, const
   const auto before = odometry != nullptr ? odometry->at(from) : std::nullopt;
   const auto after = odometry != nullptr ? odometry->at(to) : std::nullopt;
   if (!before || !after) {
+    motion.is_measured = false;
     const double place = options.speed_sigma * dt, turn = options.turn_rate_sigma * dt;
     motion.covariance = Eigen::Vector3d(place * place, place * place, turn * turn).asDiagonal();
     return motion;

@@ -22,6 +22,9 @@ struct MotionOptions {
 struct RobotMotion {
   double x = 0, y = 0, theta = 0;                        ///< [m, rad]
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< Of x, y, theta.
+  /// By odometry; else the covariance is that of a robot that may have driven, at a speed that hardly changes from one
+  /// frame to the next.
+  bool is_measured = true;
 };
 
 /// By odometry where it knows both times, else standing still with the uncertainty of a robot that may drive.

@@ -38,6 +38,7 @@ TEST(RobotMotion, WithoutOdometryTheRobotMayBeAnywhereNear) {
   odometry.add({1, 2, 0, 0});
   for (const RobotMotion& motion :
        {robot_motion(nullptr, 0, 0.5, {}), robot_motion(&odometry, 0.9, 1.4, {})}) {  // beyond what may be extrapolated
+    EXPECT_FALSE(motion.is_measured);
     EXPECT_EQ(motion.x, 0);
     EXPECT_NEAR(motion.covariance(0, 0), std::pow(0.5 * MotionOptions{}.speed_sigma, 2), 1e-12);
   }

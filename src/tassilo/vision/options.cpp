@@ -132,6 +132,41 @@ constexpr Option kOptions[] = {
          [](V& o) -> double& { return o.localize.certain; }),
     whole("localization", "pose_max_hypotheses", "1", 2, 100, "places kept until goals or odometry decide",
           [](V& o) -> int& { return o.localize.max_hypotheses; }),
+    real("track", "track_ball_acceleration", "m/s/sqrt(s)", 0.01, 100,
+         "change of a rolling ball's velocity within a second",
+         [](V& o) -> double& { return o.track.ball_acceleration; }),
+    real("track", "track_robot_acceleration", "m/s/sqrt(s)", 0.01, 100, "change of a robot's velocity within a second",
+         [](V& o) -> double& { return o.track.robot_acceleration; }),
+    real("track", "track_ball_speed", "m/s", 0.01, 100, "how fast a ball just found may be",
+         [](V& o) -> double& { return o.track.ball_speed; }),
+    real("track", "track_robot_speed", "m/s", 0.01, 100, "how fast a robot just found may be",
+         [](V& o) -> double& { return o.track.robot_speed; }),
+    real("track", "track_kick_speed", "m/s", 0, 100,
+         "change of the ball's velocity by a kick; 0: none is reckoned with",
+         [](V& o) -> double& { return o.track.kick_speed; }),
+    real("track", "track_ball_common", "1", 0, 1, "share of a ball's distance that all frames have wrong alike",
+         [](V& o) -> double& { return o.track.ball_common; }),
+    real("track", "track_robot_width", "m", 0.01, 10,
+         "width of a robot in full view; of a narrower one something is hidden",
+         [](V& o) -> double& { return o.track.robot_width; }),
+    real("track", "track_robot_common", "m", 0, 1, "uncertainty of a robot's middle that does not average out",
+         [](V& o) -> double& { return o.track.robot_common; }),
+    real("track", "track_gate", "1", 0.1, 1000,
+         "largest squared Mahalanobis distance of a sighting that belongs to a track",
+         [](V& o) -> double& { return o.track.gate; }),
+    real("track", "track_sure_ball", "1", 0, 1, "a ball of this confidence is told at once while there is no other",
+         [](V& o) -> double& { return o.track.sure_ball; }),
+    whole("track", "track_sightings", "1", 1, 100, "other objects are told after so many sightings",
+          [](V& o) -> int& { return o.track.sightings; }),
+    real("track", "track_max_age", "s", 0.01, 100, "objects are kept so long without being seen",
+         [](V& o) -> double& { return o.track.max_age; }),
+    real("track", "track_max_sigma", "m", 0.01, 100, "objects are kept while they are at least so certain",
+         [](V& o) -> double& { return o.track.max_sigma; }),
+    whole("track", "track_clear_misses", "1", 1, 100,
+          "frames in a row that show free floor where an object should be, until it is given up",
+          [](V& o) -> int& { return o.track.clear_misses; }),
+    whole("track", "track_max_tracks", "1", 1, 100, "objects followed at a time",
+          [](V& o) -> int& { return o.track.max_tracks; }),
     whole("free_space", "free_space_noise", "px", 0, 100, "so many odd pixels in a row are noise when floor follows",
           [](V& o) -> int& { return o.free_space.noise_px; }),
 };
@@ -162,6 +197,7 @@ void VisionOptions::check() const {
   boundary.check();
   motion.check();
   localize.check();
+  track.check();
 }
 
 std::vector<OptionInfo> vision_option_infos() {

@@ -18,6 +18,7 @@
 #include "tassilo/localize/localize.h"
 #include "tassilo/surface/surface.h"
 #include "tassilo/timeline/robot_motion.h"
+#include "tassilo/track/tracks.h"
 
 namespace tassilo {
 
@@ -32,6 +33,7 @@ struct VisionOptions {
   BoundaryOptions boundary;
   MotionOptions motion;
   LocalizeOptions localize;
+  TrackOptions track;
   /// How well the mount is known: what a careful calibration leaves, plus how much the robot shakes and nods while
   /// driving.
   double mount_angle_sigma = 0.0002;   ///< Of roll, pitch and yaw each. [rad]

@@ -154,6 +154,7 @@ std::vector<StageInfo> stage_infos(const StageRegistry& registry) {
       info.alternatives.push_back({alternative.name, alternative.meaning, alternative.options});
     infos.push_back(std::move(info));
   });
+  infos.push_back({"track", "ball and robots over time", {}, {}});
   for (OptionInfo& option : vision_option_infos())
     std::ranges::find(infos, option.stage, &StageInfo::key)->options.push_back(std::move(option));
   return infos;

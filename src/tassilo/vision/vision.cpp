@@ -106,17 +106,19 @@ Scene Vision::operator()(const Frame& frame, VisionWorkspace& workspace, const O
     scene.circles = std::move(lines.circles);
     scene.free_space =
         timed(scene, "free_space", [&] { return stages_.free_space(*sectors_, workspace.surface, scene.balls); });
-    // A source that begins again is another drive.
-    if (!workspace.belief || frame.t < workspace.belief->t)
-      workspace.belief = start_pose_ ? belief_in(*start_pose_, frame.t) : PoseBelief{};
+    VisionHistory& history = workspace.history;
+    if (history.beliefs.latest() != nullptr && history.beliefs.latest()->t >= frame.t) history.clear();
+    const Timed<PoseBelief>* const known = history.beliefs.before(frame.t);
+    const PoseBelief begin = known == nullptr && start_pose_ ? belief_in(*start_pose_, frame.t) : PoseBelief{};
+    const PoseBelief& before = known != nullptr ? known->value : begin;
+    const RobotMotion motion = robot_motion(odometry, known != nullptr ? known->t : frame.t, frame.t, options_.motion);
     workspace.boundary.reset();
     if (stages_.localization.needs_boundary || workspace.watch_boundary)
       workspace.boundary = timed(scene, "boundary", [&] { return stages_.field_boundary(view); });
     Localized localized = timed(scene, "localize", [&] {
-      const RobotMotion motion = robot_motion(odometry, workspace.belief->t, frame.t, options_.motion);
       return stages_.localization.run({view,
                                        *target_,
-                                       *workspace.belief,
+                                       before,
                                        motion,
                                        {lines.marks, scene.goals, &*scene.free_space},
                                        workspace.boundary ? &*workspace.boundary : nullptr,
@@ -127,7 +129,16 @@ Scene Vision::operator()(const Frame& frame, VisionWorkspace& workspace, const O
     for (std::size_t k = 0; k < localized.line_of.size() && k < scene.lines.size(); ++k)
       if (localized.line_of[k] >= 0)
         scene.lines[k].model = target_->curves.lines[static_cast<std::size_t>(localized.line_of[k])].name;
-    workspace.belief = std::move(localized.belief);
+    history.beliefs.add(frame.t, std::move(localized.belief));
+    const Timed<TrackState>* const followed = history.tracks.before(frame.t);
+    TrackState nothing;
+    nothing.t = frame.t;
+    TrackState tracks = timed(scene, "track", [&] {
+      const TrackObservation seen{scene.balls, scene.robots, &*scene.free_space, &optics_->camera};
+      return track(followed != nullptr ? followed->value : nothing, motion, seen, frame.t, options_.track);
+    });
+    scene.tracks = told(tracks, options_.track);
+    history.tracks.add(frame.t, std::move(tracks));
   }
   scene.timing.push_back({"total", ms_since(start)});
   return scene;

@@ -11,6 +11,8 @@
 #include "tassilo/image/frame.h"
 #include "tassilo/localize/localize.h"
 #include "tassilo/scene/scene.h"
+#include "tassilo/timeline/sequence.h"
+#include "tassilo/track/tracks.h"
 #include "tassilo/vision/options.h"
 #include "tassilo/vision/stages.h"
 
@@ -26,13 +28,26 @@ struct VisionSetup {
   std::optional<PoseGaussian> start_pose;
 };
 
+/// What is known from the frames before, asked for by time; no stage keeps anything of its own. A run that is given
+/// another's history goes on as that one would.
+struct VisionHistory {
+  static constexpr std::size_t kFrames = 64;  ///< Two seconds and more of a usual camera.
+  Sequence<PoseBelief> beliefs{kFrames};
+  Sequence<TrackState> tracks{kFrames};
+
+  void clear() {
+    beliefs.clear();
+    tracks.clear();
+  }
+};
+
 /// Memory that is used again from frame to frame, and what the last frame left in it, to be shown or stored.
 struct VisionWorkspace {
   Segmentation segmentation;
   Surface surface;
   bool watch_boundary = false;       ///< Find the boundary even when the localization does not ask for it.
   std::optional<Boundary> boundary;  ///< Where somebody asked for it.
-  std::optional<PoseBelief> belief;  ///< After the last frame.
+  VisionHistory history;
 };
 
 /// The one place where stages are put in order: from frame to scene.
@@ -45,7 +60,8 @@ class Vision {
   /// With alternatives from elsewhere, too.
   Vision(const VisionSetup& setup, const StageRegistry& registry);
 
-  /// Sees one frame. `timing` has a row for each stage and "total".
+  /// Sees one frame. `timing` has a row for each stage and "total". A frame that is not later than the one before
+  /// begins another drive: the history is forgotten.
   /// odometry   null where there is none
   /// Throws Error when the frame is not what check_frames asks for.
   Scene operator()(const Frame& frame, VisionWorkspace& workspace, const Odometry* odometry = nullptr) const;

@@ -77,6 +77,28 @@ TEST(Vision, TheWorkspaceCarriesNoKnowledge) {
   EXPECT_EQ(after_busy.free_space->states, alone.free_space->states);
 }
 
+TEST(Vision, FollowsBallAndRobots) {
+  const MountedCamera camera = test::cameras()[0];
+  const Vision vision(setup_for(camera));
+  Frame busy = test::render(camera, busy_world());
+  VisionWorkspace workspace;
+  Scene scene;
+  for (int k = 0; k < 5; ++k) {
+    busy.t = 0.05 * k;
+    scene = vision(busy, workspace);
+    ASSERT_FALSE(scene.tracks.empty());
+    EXPECT_EQ(scene.tracks[0].kind, TrackKind::ball);
+    EXPECT_EQ(scene.tracks[0].id, 1);
+    EXPECT_NEAR(scene.tracks[0].x, scene.balls[0].floor->position.mean.x, 1e-3);
+  }
+  ASSERT_EQ(scene.tracks.size(), 2u);
+  EXPECT_EQ(scene.tracks[1].kind, TrackKind::robot);
+  EXPECT_EQ(scene.tracks[1].team, scene.robots[0].team);
+  // A source that begins again is another drive.
+  busy.t = 0;
+  EXPECT_EQ(vision(busy, workspace).tracks.size(), 1u);
+}
+
 TEST(Vision, WithoutCalibrationItStaysInTheImage) {
   const MountedCamera camera = test::cameras()[1];
   VisionSetup setup = setup_for(camera);
@@ -91,6 +113,7 @@ TEST(Vision, WithoutCalibrationItStaysInTheImage) {
   ASSERT_EQ(scene.goals.size(), 1u);
   EXPECT_FALSE(scene.goals[0].bearing.has_value());
   EXPECT_FALSE(scene.free_space.has_value());
+  EXPECT_TRUE(scene.tracks.empty());
   EXPECT_EQ(vision.optics(), nullptr);
 }
 

@@ -75,6 +75,21 @@ inline Scene random_scene(unsigned seed) {
     }
     scene.free_space = space;
   }
+  for (int i = calibrated ? count(3) : 0; i > 0; --i) {
+    constexpr Team teams[] = {Team::unknown, Team::cyan, Team::magenta};
+    const bool ball = coin();
+    TrackSeen track{1 + count(1000),
+                    ball ? TrackKind::ball : TrackKind::robot,
+                    ball ? Team::unknown : teams[count(2)],
+                    number(-5, 5),
+                    number(-5, 5),
+                    number(-3, 3),
+                    number(-3, 3),
+                    {},
+                    coin() ? 0 : number(0, 1)};
+    for (double& value : track.covariance) value = number(-1e-3, 1e-3);
+    scene.tracks.push_back(track);
+  }
   if (coin()) scene.why = {{"pose", "no line: too dark"}, {"balls", "1 refused, above the wall"}};
   if (coin()) scene.timing = {{"decode", number(0, 2)}, {"segment", number(0, 2)}};
   scene.timing.push_back({"total", number(0, 8)});

@@ -49,6 +49,8 @@ class Canvas {
   void fill_rounded(const Rect& rect, double radius, Ink fill);
   void stroke_rounded(const Rect& rect, double radius, const Pen& pen);
   void polyline(std::span<const CanvasPoint> points, const Pen& pen);
+  /// A stroke with an open head at `to`.
+  void arrow(CanvasPoint from, CanvasPoint to, const Pen& pen);
   /// All polygons as one area: shared edges leave no seams.
   void fill_polygons(std::span<const std::vector<CanvasPoint>> polygons, Ink fill);
   /// Likewise where `shown`, a picture of the canvas's rectangle `place`, is 255: rows of `columns` bytes, 0 hides.

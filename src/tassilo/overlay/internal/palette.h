@@ -44,6 +44,14 @@ inline Ink team_ink(Team team) {
   return ink(0xcbd5e1);
 }
 
+inline Ink track_ink(const TrackSeen& track) {
+  const Ink color = track.kind == TrackKind::ball ? kBallInk : team_ink(track.team);
+  return color.with_alpha(track.age > 0 ? .65 : 1);
+}
+
+/// Arrows reach as far as an object comes in this time. [s]
+inline constexpr double kArrowTime = .5;
+
 inline Ink line_ink(LineKind kind) { return kind == LineKind::line ? kLineInk : kBoundaryInk; }
 
 /// Of label maps, by label 0..8; no_color is not drawn.
