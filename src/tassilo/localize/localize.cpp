@@ -12,7 +12,7 @@
 namespace tassilo {
 namespace {
 
-/// Is it one place, of half a metre and 15 degrees, but for the twentieth that is beyond two standard deviations?
+/// Is it one place, of half a meter and 15 degrees, but for the twentieth that is beyond two standard deviations?
 /// Less is of no use to anyone who wants to drive somewhere.
 bool is_one_place(const PoseGaussian& pose) {
   constexpr double most_sigma = 0.25, most_turn_sigma = 0.13;  // [m], [rad]
@@ -105,6 +105,7 @@ Localized localize(const FieldTarget& target, const PoseBelief& before, const Ro
   belief.t = t;
   belief.fixed_at = before.fixed_at;
   belief.doubts = before.doubts;
+  belief.tied = before.tied;
 
   std::optional<PoseFit> best;
   double best_weight = 0;
@@ -120,7 +121,7 @@ Localized localize(const FieldTarget& target, const PoseBelief& before, const Ro
     if (is_one_place(prior))
       believe(fit_pose(target, seen, prior), one.log_weight);
     else
-      for (PoseFit& fit : fit_poses(target, seen, prior)) believe(std::move(fit), one.log_weight);
+      for (PoseFit& fit : fit_poses(target, seen, prior, !before.tied)) believe(std::move(fit), one.log_weight);
   }
   // Two lines and more that the best place does not explain: perhaps it is another.
   constexpr int enough_marks = 16, enough_doubts = 3;
@@ -171,6 +172,7 @@ Localized localize(const FieldTarget& target, const PoseBelief& before, const Ro
   told.age = t - belief.fixed_at;
   result.pose = told;
   belief.told = true;
+  belief.tied = belief.tied || tied;
   result.why.append(std::to_string(best->lines_explained)).append(" of ").append(std::to_string(best->lines_seen));
   result.why.append(told.mirror ? " lines explained, by the mirrored place as well" : " lines explained");
   return result;

@@ -201,7 +201,7 @@ TEST(Localize, ARoughStartGivesNoWrongPose) {
                std::abs(wrap_angle(localized.pose->theta - truth.theta())) > 0.26;
     }
     // Told is what is one place but for a twentieth of the belief. Two lines far away, the robot perhaps tilted, leave
-    // a bent one that no Gaussian fits: of all scenes one is 51 cm off.
+    // a bent one that no Gaussian fits: two of all scenes are 51 cm off.
     EXPECT_LE(wrong, told / 100);
     EXPECT_GT(told, 0.8 * seen_two);
   }

@@ -48,6 +48,21 @@ RecycledVector<SeenLine> seen_lines(std::span<const LineMark> marks) {
   return lines;
 }
 
+/// Where seen floor ends.
+struct FloorEnd {
+  FloorPoint at;
+  double range = 0;  ///< [m]
+};
+RecycledVector<FloorEnd> floor_ends(const FreeSpace* space) {
+  RecycledVector<FloorEnd> ends;
+  for (std::size_t k = 0; space != nullptr && k < space->ranges.size(); ++k) {
+    if (space->states[k] == SectorState::unseen) continue;
+    const double angle = space->angle_min + static_cast<double>(k) * space->angle_increment;
+    ends.push_back({space->origin + space->ranges[k] * FloorPoint{std::cos(angle), std::sin(angle)}, space->ranges[k]});
+  }
+  return ends;
+}
+
 /// How far a robot that drives is from standing level: its front down, its right side down. [rad]
 struct Tilt {
   double pitch = 0, roll = 0;
@@ -76,7 +91,7 @@ constexpr double kUnexplained = 8;     // log likelihood that a seen line is non
 constexpr double kMostEvidence = 6;    // independent places of a line: they share blur and mount
 constexpr double kTiltSigma = 0.0175;  // [rad] a robot that drives nods and rolls by up to two degrees
 // Where the prior's share counts, a line that is none of the field's costs this more. One in twenty is none (3); one
-// that is lies within centimetres and degrees of its place instead of anywhere on the floor (10, of which 8 are above).
+// that is lies within centimeters and degrees of its place instead of anywhere on the floor (10, of which 8 are above).
 constexpr double kStray = 5;
 constexpr double kGoalCap = 25;
 constexpr double kPostSigma = 0.015;  // [rad] a pixel or two, and the width of a post's rim
@@ -94,18 +109,23 @@ double y_of_left_post(const FieldModel::Goal& goal) {
 class Fitter {
  public:
   Fitter(const FieldTarget& target, const PoseObservation& seen)
-      : target_(target), seen_(seen), lines_(seen_lines(seen.marks)), of_(lines_.size(), -1) {}
+      : target_(target),
+        seen_(seen),
+        lines_(seen_lines(seen.marks)),
+        floor_ends_(floor_ends(seen.free_space)),
+        of_(lines_.size(), -1) {}
 
   const RecycledVector<SeenLine>& lines() const { return lines_; }
 
   /// Is it known where the marks were seen from?
-  bool may_tilt() const { return !seen_.marks.empty() && seen_.marks.front().eye.z > 0; }
-  /// Sees everything as a robot does that is tilted; only where it may.
+  bool knows_eye() const { return !seen_.marks.empty() && seen_.marks.front().eye.z > 0; }
+  /// Sees everything as a robot does that is tilted; only where the eye is known.
   void tilt(const Tilt& tilt) {
-    tilt_ = tilt;
     tilted_.assign(seen_.marks.begin(), seen_.marks.end());
     for (LineMark& mark : tilted_) mark.at = tilted(mark.at, mark.eye, tilt);
     lines_ = seen_lines(tilted_);
+    floor_ends_ = floor_ends(seen_.free_space);
+    for (FloorEnd& end : floor_ends_) end.at = tilted(end.at, tilted_.front().eye, tilt);
   }
 
   /// How well a pose explains what is seen; `slack` is how far off the pose may be at the marks. [m]
@@ -265,18 +285,13 @@ class Fitter {
   }
   /// Floor that is seen does not lie behind a wall.
   double free_floor(const FieldFromRobot& field_from_robot) const {
-    if (seen_.free_space == nullptr || !target_.field.walls) return 0;
-    const FreeSpace& space = *seen_.free_space;
+    if (!target_.field.walls) return 0;
     constexpr double margin = 0.2, most = 8;  // [m]; log likelihood
     double total = 0;
-    for (std::size_t k = 0; k < space.ranges.size(); ++k) {
-      if (space.states[k] == SectorState::unseen) continue;
-      const double angle = space.angle_min + static_cast<double>(k) * space.angle_increment;
-      FloorPoint end = space.origin + space.ranges[k] * FloorPoint{std::cos(angle), std::sin(angle)};
-      if (!tilted_.empty()) end = tilted(end, tilted_.front().eye, tilt_);
-      const FieldPoint p = field_from_robot * end;
+    for (const FloorEnd& end : floor_ends_) {
+      const FieldPoint p = field_from_robot * end.at;
       const Interval &x = target_.field.walls->x, &y = target_.field.walls->y;
-      const double slack = margin + 0.05 * space.ranges[k];
+      const double slack = margin + 0.05 * end.range;
       // Goals have floor, too.
       double depth = 0;
       for (const FieldModel::Goal& goal : target_.field.goals)
@@ -290,9 +305,9 @@ class Fitter {
 
   const FieldTarget& target_;
   const PoseObservation& seen_;
-  Tilt tilt_;
   RecycledVector<LineMark> tilted_;  ///< Empty where it was not asked for.
   RecycledVector<SeenLine> lines_;
+  RecycledVector<FloorEnd> floor_ends_;
   RecycledVector<int> of_;  ///< Model line (or arc) of each seen line, -1: none.
 };
 
@@ -525,7 +540,8 @@ PoseFit fit_pose(const FieldTarget& target, const PoseObservation& seen, const P
   return fit_with<3>(fitter, prior, prior).fit;
 }
 
-RecycledVector<PoseFit> fit_poses(const FieldTarget& target, const PoseObservation& seen, const PoseGaussian& prior) {
+RecycledVector<PoseFit> fit_poses(const FieldTarget& target, const PoseObservation& seen, const PoseGaussian& prior,
+                                  bool may_tilt) {
   Fitter fitter(target, seen);
   RecycledVector<Fitted> found;
   const auto weight = [](const Fitted& one) {
@@ -541,7 +557,7 @@ RecycledVector<PoseFit> fit_poses(const FieldTarget& target, const PoseObservati
     else if (weight(*same) < weight(one))
       *same = std::move(one);
   };
-  const bool may_tilt = fitter.may_tilt();
+  may_tilt = may_tilt && fitter.knows_eye();
   const auto fit_from = [&](const PoseGaussian& start, const Tilt& tilt) {
     // A line that is one of the field's has drawn the pose to itself. One that lies further off has not, and if it
     // counted as explained, a loose pose would explain all.

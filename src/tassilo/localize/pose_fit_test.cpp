@@ -124,7 +124,7 @@ TEST(FitPoses, HaveTheRightOneAndAreHonestWhereTheRobotTilts) {
       const Eigen::Vector3d off(pose.x - truth.x, pose.y - truth.y, wrap_angle(pose.theta - truth.theta()));
       return std::min(100., off.dot(pose.covariance.ldlt().solve(off)));
     };
-    const auto fits = fit_poses(target, seen.observation(), prior);
+    const auto fits = fit_poses(target, seen.observation(), prior, true);
     ASSERT_FALSE(fits.empty());
     sum += squared_error(fits.front().pose);
     sum_of_level += squared_error(fit_pose(target, seen.observation(), prior).pose);
@@ -144,7 +144,7 @@ TEST(FitPoses, ALineThatIsNoneOfTheFieldsLeavesThePrior) {
   for (int k = 0; k < 20; ++k)  // slanting where no line of the field is
     marks.push_back({{1 + 0.05 * k, -0.4 + 0.05 * k}, {0.7, -0.7}, 0.003, 0.002, LineKind::line, 0});
   observation.marks = marks;
-  const auto fits = fit_poses(target, observation, prior_at(1.5, 0.3, 0, 0.1, 0.05));
+  const auto fits = fit_poses(target, observation, prior_at(1.5, 0.3, 0, 0.1, 0.05), true);
   ASSERT_FALSE(fits.empty());
   EXPECT_EQ(fits.front().lines_explained, 0);
   EXPECT_NEAR(fits.front().pose.x, 1.5, 1e-9);
