@@ -283,6 +283,7 @@ Localized localize_by_boundary(const FieldTarget& target, const PoseBelief& befo
   PoseBelief& belief = result.belief;
   belief.t = t;
   belief.fixed_at = fix.matches.empty() ? before.fixed_at : t;
+  belief.tied = before.tied || !fix.matches.empty();
   belief.doubts = fix.refused > 0 ? before.doubts + 1 : fix.matches.empty() ? before.doubts : 0;
   result.why = std::move(fix.why);
   if (!fix.pose) {
