@@ -76,6 +76,33 @@ def test_options_are_those_of_the_robot_file(colors, frame):
             Vision(colors, options=bad)
 
 
+def test_stages_are_chosen_by_name(colors, frame):
+    stages = {stage["key"]: stage for stage in tassilo.stages()}
+    assert [a["name"] for a in stages["field_boundary"]["alternatives"]] == ["subpixel", "skeleton"]
+    assert stages["surface"]["alternatives"] == [] and all(stage["meaning"] for stage in stages.values())
+    listed = [option["key"] for stage in stages.values() for option in stage["options"]]
+    assert sorted(listed) == sorted(option["key"] for option in tassilo.vision_options())
+    for stage in stages.values():
+        for alternative in stage["alternatives"]:
+            vision = Vision(colors, CLIP / "camera.yaml", options={stage["key"]: alternative["name"]})
+            assert vision(frame)["balls"]
+    for bad in ({"field_boundary": "skeletom"}, {"field_boundary": 1}, {"localization": None}):
+        with pytest.raises(ValueError, match="options: vision.*must be (subpixel or skeleton|model or boundary)"):
+            Vision(colors, options=bad)
+
+
+def test_a_robot_file_brings_alternatives(colors, frame, tmp_path):
+    colors.save(tmp_path / "colors.yaml")
+    robot = tmp_path / "robot.yaml"
+    robot.write_text(f"colors: colors.yaml\nplugins: [{os.environ['TASSILO_PLUGIN']}]\nvision: {{balls: blind}}\n")
+    for _ in range(2):  # read again, in one process
+        scene = Vision.from_robot(robot)(frame)
+        assert scene["balls"] == [] and scene["why"]["balls"] == "blind"
+    robot.write_text("colors: colors.yaml\nplugins: [none.so]\n")
+    with pytest.raises(tassilo.Error, match="robot.yaml: names .*none.so as a plug-in, which does not exist"):
+        Vision.from_robot(robot)
+
+
 def test_wrong_types_are_type_errors(colors):
     for call in (lambda: Vision(3), lambda: Vision(None), lambda: Vision(colors, 3), lambda: Vision(colors, field=None),
                  lambda: Vision(colors)(3), lambda: Vision(colors, options=[1])):

@@ -36,6 +36,7 @@ namespace {
 struct RunArguments {
   std::string robot, source, odometry, output, overlay, overlay_step, label_maps, colors, start_pose;
   std::string format, size, range;
+  std::vector<std::string> plugins;
   std::optional<RawFormat> raw;    ///< What `format`, `size`, `range` and `fps` say.
   std::optional<StartPose> start;  ///< What `start_pose` says.
   double fps = 0;
@@ -255,7 +256,7 @@ std::optional<Odometry> load_odometry(const std::string& file) {
 int run_command(const RunArguments& arguments) {
   using Clock = std::chrono::steady_clock;
   const auto load = [&] {
-    return load_configuration(arguments.robot, arguments.colors, [&](RobotSetup& setup) {
+    return load_configuration(arguments.robot, arguments.colors, arguments.plugins, [&](RobotSetup& setup) {
       if (arguments.start) setup.vision.start_pose = gaussian_of(*arguments.start);
     });
   };
@@ -380,6 +381,7 @@ Command add_run(CLI::App& program) {
       ->check(CLI::IsMember(std::vector<std::string>(kBoundarySteps.begin(), kBoundarySteps.end())));
   command->add_option("--label-maps", arguments->label_maps, "folder for color classes 0..8 as NNNN.png");
   command->add_option("--colors", arguments->colors, "color table, instead of the robot file's");
+  add_plugin_option(*command, arguments->plugins);
   command->add_option("--format", arguments->format, "raw frames: pixel format")
       ->check(CLI::IsMember({"yuv420p", "yuv422p", "yuyv422", "uyvy422", "nv12"}));
   command->add_option("--size", arguments->size, "raw frames: WIDTHxHEIGHT");
