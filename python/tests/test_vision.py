@@ -23,10 +23,11 @@ def without_times(scene):
     return {**scene, "timing_ms": sorted(set(scene["timing_ms"]) - {"decode"})}
 
 
-def without_pose(scene):
+def without_history(scene):
+    """What the frame shows by itself: no pose and no tracks, which need the frames before."""
     lines = [{key: value for key, value in line.items() if key != "model"} for line in scene["lines"]]
     why = {subject: reason for subject, reason in scene["why"].items() if subject != "pose"}
-    return {**scene, "pose": None, "lines": lines, "why": why}
+    return {**scene, "pose": None, "tracks": [], "lines": lines, "why": why}
 
 
 def test_scenes_are_the_lines_of_the_program(vision, colors, tmp_path):
@@ -42,7 +43,7 @@ def test_scenes_are_the_lines_of_the_program(vision, colors, tmp_path):
         expected, *seen = [without_times(scene) for scene in (json.loads(line), vision(frame), robot(frame))]
         assert all(list(scene) == list(expected) for scene in seen)
         pose, *poses = [scene["pose"] for scene in (expected, *seen)]
-        assert [without_pose(scene) for scene in seen] == [without_pose(expected)] * 2
+        assert [without_history(scene) for scene in seen] == [without_history(expected)] * 2
         for other in poses:
             assert other is None or abs(other["x"] - pose["x"]) < .1 and abs(other["y"] - pose["y"]) < .1
 

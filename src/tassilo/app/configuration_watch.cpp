@@ -15,7 +15,7 @@ constexpr int kPausesUntilRetry = 10;
 }  // namespace
 
 std::shared_ptr<const Configuration> load_configuration(const std::string& robot_file, const std::string& colors,
-                                                        std::span<const std::string> plugins,
+                                                        const std::vector<std::string>& plugins,
                                                         const std::function<void(RobotSetup&)>& change) {
   using std::chrono::system_clock, std::chrono::nanoseconds;
   const auto now = std::chrono::duration_cast<nanoseconds>(system_clock::now().time_since_epoch());
