@@ -3,10 +3,12 @@
 #include <cstdlib>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "tassilo/app/commands.h"
 #include "tassilo/base/kernel.h"
 #include "tassilo/files/field_file.h"
+#include "tassilo/source/camera.h"
 #include "tassilo/vision/options.h"
 
 namespace tassilo {
@@ -33,14 +35,53 @@ void print_overview() {
   for (const auto& folder : config_folders()) fmt::print("  {}\n", folder.string());
 }
 
+/// "640x480 (30), 1280x720 (10)" of all modes of one format.
+std::string sizes_of(const CameraInfo& camera, const std::string& format) {
+  std::string text;
+  for (const CameraMode& mode : camera.modes) {
+    if (mode.format != format) continue;
+    text += fmt::format("{}{}x{}", text.empty() ? "" : ", ", mode.width, mode.height);
+    if (mode.fps > 0) text += fmt::format(" ({:.4g})", mode.fps);
+  }
+  return text;
+}
+
+void print_cameras() {
+  const std::vector<CameraInfo> cameras = list_cameras();
+  if (cameras.empty())
+    fmt::print(
+        "no camera: none of /dev/video0 to /dev/video255 captures video; is it plugged in, and in a container, is "
+        "the device passed on?\n");
+  for (const CameraInfo& camera : cameras) {
+    if (camera.name.empty()) {
+      fmt::print("{}: cannot be opened: {}{}\n", camera.path, camera.problem,
+                 camera.problem == "permission denied" ? "; is the user in the group video?" : "");
+      continue;
+    }
+    fmt::print("{}: {}, {}\n", camera.path, camera.name, camera.bus);
+    std::string last;
+    for (const CameraMode& mode : camera.modes) {
+      if (mode.format == last) continue;
+      last = mode.format;
+      fmt::print("  {:6} {}{}\n", mode.format, sizes_of(camera, mode.format), mode.usable ? "" : "  (not for Tassilo)");
+    }
+  }
+  if (!cameras.empty()) fmt::print("\nformat, sizes [px], highest rate [frames/s]\n");
+}
+
 }  // namespace
 
 Command add_info(CLI::App& program) {
   auto* command = program.add_subcommand("info", "tell about this program");
   auto options = std::make_shared<bool>(false);
   command->add_flag("--options", *options, "list the options of the vision: default, unit, range, meaning");
-  return [options] {
-    *options ? print_options() : print_overview();
+  auto cameras = std::make_shared<bool>(false);
+  command->add_flag("--cameras", *cameras, "list the cameras of this machine: device, name, formats, sizes, rates");
+  return [options, cameras] {
+    if (*cameras)
+      print_cameras();
+    else
+      *options ? print_options() : print_overview();
     return 0;
   };
 }
