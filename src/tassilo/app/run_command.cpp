@@ -19,6 +19,7 @@
 #include "tassilo/app/configuration_watch.h"
 #include "tassilo/app/robot_setup.h"
 #include "tassilo/app/run_summary.h"
+#include "tassilo/app/source_arguments.h"
 #include "tassilo/app/written_files.h"
 #include "tassilo/base/error.h"
 #include "tassilo/files/odometry_file.h"
@@ -34,12 +35,10 @@ namespace tassilo {
 namespace {
 
 struct RunArguments {
-  std::string robot, source, odometry, output, overlay, overlay_step, label_maps, colors, start_pose;
-  std::string format, size, range;
+  SourceArguments source;
+  std::string robot, odometry, output, overlay, overlay_step, label_maps, colors, start_pose;
   std::vector<std::string> plugins;
-  std::optional<RawFormat> raw;    ///< What `format`, `size`, `range` and `fps` say.
   std::optional<StartPose> start;  ///< What `start_pose` says.
-  double fps = 0;
   int every = 1;
   int threads = 1;
   bool watch = false;
@@ -57,40 +56,6 @@ void end_cleanly_on_signals() {
   action.sa_flags = static_cast<int>(SA_RESETHAND);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
-}
-
-/// Throws CLI::ValidationError: what it refuses is wrong usage.
-std::optional<RawFormat> raw_format(const RunArguments& arguments) {
-  if (arguments.format.empty()) {
-    if (!arguments.size.empty() || !arguments.range.empty())
-      throw CLI::ValidationError("--size and --range", "belong to raw frames, --format is missing");
-    return std::nullopt;
-  }
-  if (arguments.size.empty() || arguments.range.empty() || arguments.fps <= 0)
-    throw CLI::ValidationError(
-        "--format", "raw frames do not say what they are: give --size WxH, --range full|limited and --fps N, too");
-  RawFormat raw;
-  for (const PixelFormat format :
-       {PixelFormat::yuyv422, PixelFormat::uyvy422, PixelFormat::yuv422p, PixelFormat::yuv420p, PixelFormat::nv12})
-    if (arguments.format == to_string(format)) raw.format = format;
-  const auto cross = arguments.size.find('x');
-  try {
-    std::size_t used_width = 0, used_height = 0;
-    const std::string height = cross == std::string::npos ? "" : arguments.size.substr(cross + 1);
-    raw.width = std::stoi(arguments.size, &used_width);
-    raw.height = std::stoi(height, &used_height);
-    if (used_width != cross || used_height != height.size()) throw std::invalid_argument("size");
-  } catch (const std::logic_error&) {
-    throw CLI::ValidationError("--size", "is " + arguments.size + ", must be like 640x480");
-  }
-  raw.range = arguments.range == "full" ? ColorRange::full : ColorRange::limited;
-  raw.fps = arguments.fps;
-  try {
-    raw.check();
-  } catch (const Error& error) {
-    throw CLI::ValidationError("--size", error.what());
-  }
-  return raw;
 }
 
 /// Throws CLI::ValidationError: what it refuses is wrong usage.
@@ -117,8 +82,8 @@ std::optional<StartPose> start_pose_from(const std::string& text) {
 
 /// Throws Error when a file that is read would be overwritten.
 void check_paths(const RunArguments& arguments, std::vector<NamedFile> read) {
-  const std::filesystem::path source = arguments.source;
-  read.push_back({"--source", arguments.source});
+  const std::filesystem::path source = arguments.source.source;
+  read.push_back({"--source", arguments.source.source});
   read.push_back({"--odometry", arguments.odometry});
   // Pictures are written as NNNN.png: among other pictures one may have this name.
   const std::string extension = source.extension().string();
@@ -130,13 +95,13 @@ void check_paths(const RunArguments& arguments, std::vector<NamedFile> read) {
 }
 
 /// Bytes without a header open as no video; says what they may be.
-FrameSource open_source_of(const RunArguments& arguments, const SourceOptions& options) {
+FrameSource open_source_of(const SourceOptions& options) {
   try {
     return open_source(options);
   } catch (const Error& error) {
-    const std::string extension = std::filesystem::path(arguments.source).extension().string();
+    const std::string extension = std::filesystem::path(options.location).extension().string();
     const bool may_be_raw =
-        arguments.source == "-" || extension == ".yuv" || extension == ".raw" || extension == ".nv12";
+        options.location == "-" || extension == ".yuv" || extension == ".raw" || extension == ".nv12";
     if (options.raw || !may_be_raw || interrupted) throw;
     throw Error(error.what(), "raw frames need --format, --size, --range and --fps");
   }
@@ -270,16 +235,29 @@ int run_command(const RunArguments& arguments) {
   };
 
   SourceOptions source_options;
-  source_options.location = arguments.source;
-  source_options.raw = arguments.raw;
+  source_options.location = arguments.source.source;
+  source_options.raw = arguments.source.raw;
   source_options.images_range = configuration->setup.vision.colors.range;
-  source_options.fps = arguments.fps;
+  source_options.fps = arguments.source.fps;
   source_options.threads = arguments.threads;
   source_options.interrupted = [] { return interrupted.load(); };
+  const bool is_live = arguments.source.camera.has_value();
+  if (is_live) source_options.camera = *arguments.source.camera;
+  // Frames that fit the camera file need no --size.
+  if (const auto& camera = configuration->setup.vision.camera; camera && arguments.source.size.empty()) {
+    source_options.camera.width = camera->width;
+    source_options.camera.height = camera->height;
+  }
+  std::optional<Progress> progress;
+  source_options.camera_news = [&](const CameraNews& news) {
+    if (progress) progress->clear();
+    tell(fmt::format("{}: {}\n", to_string(news.state), news.text));
+    std::fflush(report);  // somebody waits for it
+  };
   end_cleanly_on_signals();
   std::optional<FrameSource> opened;
   try {
-    opened = open_source_of(arguments, source_options);
+    opened = open_source_of(source_options);
   } catch (const Error&) {
     if (!interrupted) throw;
     tell("ended by a signal before the first frame\n");
@@ -292,13 +270,14 @@ int run_command(const RunArguments& arguments) {
   };
   check_source(configuration->vision);
   tell(fmt::format("{}: {}\n", name, source.info().description));
+  if (is_live) std::fflush(report);  // somebody watches
 
   Sinks sinks(arguments);
   VisionWorkspace workspace;
   workspace.watch_boundary = !arguments.overlay_step.empty();
   RunSummary summary;
   if (odometry) summary.set_odometry(odometry->counts());
-  Progress progress(!arguments.quiet, source.info().frame_count);
+  progress.emplace(!arguments.quiet, source.info().frame_count);
   std::optional<Error> damage;
   std::int64_t read = 0, done = 0;
   std::optional<ConfigurationWatch> watch;
@@ -319,7 +298,7 @@ int run_command(const RunArguments& arguments) {
       const double decode_ms = ms_between(before, Clock::now());
       RecycledString changes;
       if (auto news = watch ? watch->news() : std::nullopt) {
-        progress.clear();
+        progress->clear();
         if (news->configuration) {
           configuration = std::move(news->configuration);
           changes = "a changed one was taken over";
@@ -335,7 +314,7 @@ int run_command(const RunArguments& arguments) {
       const Vision& vision = configuration->vision;
       vision.check_frames(name_of(*frame, name), frame->view.width(), frame->view.height(), frame->range);
       Scene scene = vision(*frame, workspace, odometry ? &*odometry : nullptr);
-      scene.timing.insert(scene.timing.begin(), {"decode", decode_ms});
+      scene.timing.insert(scene.timing.begin(), {is_live ? "wait" : "decode", decode_ms});
       if (!changes.empty()) scene.why.emplace_back("configuration", std::move(changes));
       if (odometry) {
         const bool known = odometry->at(frame->t).has_value();
@@ -344,15 +323,15 @@ int run_command(const RunArguments& arguments) {
       }
       sinks.write(*frame, scene, workspace, vision.optics());
       summary.add(scene);
-      progress.frame(++done);
+      progress->frame(++done);
     }
     sinks.finish();
   } catch (const Error& error) {
     damage = error;
   }
   const double seconds = ms_between(begin, Clock::now()) / 1000;
-  progress.finish();
-  tell(summary.text(seconds));
+  progress->finish();
+  tell(summary.text(seconds, camera_summary(source.camera_counts())));
   if (interrupted) tell("\nended by a signal; all lines are complete\n");
   tell(sinks.names());
   if (damage) throw *damage;
@@ -366,10 +345,7 @@ Command add_run(CLI::App& program) {
       program.add_subcommand("run", "see: balls, goals, robots, lines and free space in every frame of a source");
   auto arguments = std::make_shared<RunArguments>();
   command->add_option("-r,--robot", arguments->robot, "robot.yaml: camera, colors, field and options of one robot");
-  command
-      ->add_option("-s,--source", arguments->source,
-                   "video or image file, folder of images, URL, or - for standard input")
-      ->required();
+  arguments->source.add_to(*command);
   command->add_option("--odometry", arguments->odometry, "odometry.jsonl on the clock of the frames");
   command->add_option("--start-pose", arguments->start_pose,
                       "X,Y,THETA[,SIGMA_XY,SIGMA_THETA] on the field, instead of the robot file's [m, rad]");
@@ -382,13 +358,6 @@ Command add_run(CLI::App& program) {
   command->add_option("--label-maps", arguments->label_maps, "folder for color classes 0..8 as NNNN.png");
   command->add_option("--colors", arguments->colors, "color table, instead of the robot file's");
   add_plugin_option(*command, arguments->plugins);
-  command->add_option("--format", arguments->format, "raw frames: pixel format")
-      ->check(CLI::IsMember({"yuv420p", "yuv422p", "yuyv422", "uyvy422", "nv12"}));
-  command->add_option("--size", arguments->size, "raw frames: WIDTHxHEIGHT");
-  command->add_option("--range", arguments->range, "raw frames: color range")
-      ->check(CLI::IsMember({"limited", "full"}));
-  command->add_option("--fps", arguments->fps, "raw frames, folders: frames per second")
-      ->check(CLI::Range(0.001, 10000.0));
   command->add_option("--threads", arguments->threads, "for decoding and encoding; seeing itself takes one core")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
@@ -403,7 +372,7 @@ Command add_run(CLI::App& program) {
       throw CLI::ValidationError("--overlay-step", "says what is drawn, --overlay is missing");
     if (arguments->watch && arguments->robot.empty())
       throw CLI::ValidationError("--watch", "watches the robot file, --robot is missing");
-    arguments->raw = raw_format(*arguments);
+    arguments->source.understand();
     arguments->start = start_pose_from(arguments->start_pose);
   });
   return [arguments] { return run_command(*arguments); };
