@@ -33,7 +33,7 @@ thread tuple type_traits typeindex typeinfo unordered_map unordered_set utility 
 """.split())
 
 # Headers of the system and of third parties by part, for .cpp files and internal/ headers; prefixes.
-POSIX = ["unistd.h", "fcntl.h", "dlfcn.h", "poll.h", "signal.h", "sys/"]
+POSIX = ["unistd.h", "fcntl.h", "dlfcn.h", "poll.h", "signal.h", "sys/", "arpa/", "netinet/"]
 FFMPEG = ["libavformat/", "libavcodec/", "libavutil/", "libswscale/"]
 THIRD_PARTY = {
     "calibrate": ["ceres/", "apriltag/"],

@@ -17,12 +17,12 @@
 #include "tassilo/app/boundary_steps.h"
 #include "tassilo/app/commands.h"
 #include "tassilo/app/configuration_watch.h"
+#include "tassilo/app/odometry_input.h"
 #include "tassilo/app/robot_setup.h"
 #include "tassilo/app/run_summary.h"
 #include "tassilo/app/source_arguments.h"
 #include "tassilo/app/written_files.h"
 #include "tassilo/base/error.h"
-#include "tassilo/files/odometry_file.h"
 #include "tassilo/files/scene_json.h"
 #include "tassilo/overlay/overlay.h"
 #include "tassilo/record/image_folder.h"
@@ -208,15 +208,6 @@ double ms_between(std::chrono::steady_clock::time_point from, std::chrono::stead
   return std::chrono::duration<double, std::milli>(to - from).count();
 }
 
-/// All of the file, in the order of time; nothing where none is given.
-std::optional<Odometry> load_odometry(const std::string& file) {
-  if (file.empty()) return std::nullopt;
-  const std::vector<OdometrySample> samples = read_odometry(file);
-  Odometry odometry(std::max<std::size_t>(2, samples.size()));
-  for (const OdometrySample& sample : samples) odometry.add(sample);
-  return odometry;
-}
-
 int run_command(const RunArguments& arguments) {
   using Clock = std::chrono::steady_clock;
   const auto load = [&] {
@@ -226,7 +217,10 @@ int run_command(const RunArguments& arguments) {
   };
   std::shared_ptr<const Configuration> configuration = load();
   check_paths(arguments, configuration->setup.read);
-  const std::optional<Odometry> odometry = load_odometry(arguments.odometry);
+  const bool is_live = arguments.source.camera.has_value();
+  const bool loses_nothing = !is_live && arguments.source.source.find("://") == std::string::npos;
+  OdometryInput odometry_input(arguments.odometry, loses_nothing);
+  const Odometry* const odometry = odometry_input.get();
   // Nothing but scene lines may go where scene lines go.
   std::FILE* report = arguments.output == "-" ? stderr : stdout;
   const auto tell = [&](const std::string& text) {
@@ -240,7 +234,6 @@ int run_command(const RunArguments& arguments) {
   source_options.fps = arguments.source.fps;
   source_options.threads = arguments.threads;
   source_options.interrupted = [] { return interrupted.load(); };
-  const bool is_live = arguments.source.camera.has_value();
   if (is_live) source_options.camera = *arguments.source.camera;
   // Frames that fit the camera file need no --size.
   if (const auto& camera = configuration->setup.vision.camera; camera && arguments.source.size.empty()) {
@@ -275,7 +268,6 @@ int run_command(const RunArguments& arguments) {
   VisionWorkspace workspace;
   workspace.watch_boundary = !arguments.overlay_step.empty();
   RunSummary summary;
-  if (odometry) summary.set_odometry(odometry->counts());
   progress.emplace(!arguments.quiet, source.info().frame_count);
   std::optional<Error> damage;
   std::int64_t read = 0, done = 0;
@@ -310,9 +302,10 @@ int run_command(const RunArguments& arguments) {
         }
         std::fflush(report);  // somebody waits for it
       }
+      odometry_input.update(frame->t, source_options.interrupted);
       const Vision& vision = configuration->vision;
       vision.check_frames(name_of(*frame, name), frame->view.width(), frame->view.height(), frame->range);
-      Scene scene = vision(*frame, workspace, odometry ? &*odometry : nullptr);
+      Scene scene = vision(*frame, workspace, odometry);
       scene.timing.insert(scene.timing.begin(), {is_live ? "wait" : "decode", decode_ms});
       if (!changes.empty()) scene.why.emplace_back("configuration", std::move(changes));
       if (odometry) {
@@ -330,7 +323,8 @@ int run_command(const RunArguments& arguments) {
   }
   const double seconds = ms_between(begin, Clock::now()) / 1000;
   progress->finish();
-  tell(summary.text(seconds, camera_summary(source.camera_counts())));
+  if (odometry) summary.set_odometry(odometry->counts());
+  tell(summary.text(seconds, camera_summary(source.camera_counts()) + odometry_input.summary()));
   if (interrupted) tell("\nended by a signal; all lines are complete\n");
   tell(sinks.names());
   if (damage) throw *damage;
@@ -345,7 +339,8 @@ Command add_run(CLI::App& program) {
   auto arguments = std::make_shared<RunArguments>();
   command->add_option("-r,--robot", arguments->robot, "robot.yaml: camera, colors, field and options of one robot");
   arguments->source.add_to(*command);
-  command->add_option("--odometry", arguments->odometry, "odometry.jsonl on the clock of the frames");
+  command->add_option("--odometry", arguments->odometry,
+                      "odometry.jsonl on the clock of the frames; live: - for standard input, or udp:127.0.0.1:PORT");
   command->add_option("--start-pose", arguments->start_pose,
                       "X,Y,THETA[,SIGMA_XY,SIGMA_THETA] on the field, instead of the robot file's [m, rad]");
   command->add_option("-o,--output", arguments->output, "scenes as JSON Lines; - for standard output");
@@ -370,6 +365,8 @@ Command add_run(CLI::App& program) {
       throw CLI::ValidationError("--overlay-step", "says what is drawn, --overlay is missing");
     if (arguments->watch && arguments->robot.empty())
       throw CLI::ValidationError("--watch", "watches the robot file, --robot is missing");
+    if (arguments->odometry == "-" && arguments->source.source == "-")
+      throw CLI::ValidationError("--odometry", "and --source cannot both be standard input");
     arguments->source.understand();
     arguments->start = start_pose_from(arguments->start_pose);
   });
