@@ -37,6 +37,7 @@ namespace {
 struct RunArguments {
   SourceArguments source;
   std::string robot, odometry, output, overlay, overlay_step, label_maps, colors, start_pose;
+  std::vector<std::string> plugins;
   std::optional<StartPose> start;  ///< What `start_pose` says.
   int every = 1;
   int threads = 1;
@@ -211,7 +212,7 @@ double ms_between(std::chrono::steady_clock::time_point from, std::chrono::stead
 int run_command(const RunArguments& arguments) {
   using Clock = std::chrono::steady_clock;
   const auto load = [&] {
-    return load_configuration(arguments.robot, arguments.colors, [&](RobotSetup& setup) {
+    return load_configuration(arguments.robot, arguments.colors, arguments.plugins, [&](RobotSetup& setup) {
       if (arguments.start) setup.vision.start_pose = gaussian_of(*arguments.start);
     });
   };
@@ -351,6 +352,7 @@ Command add_run(CLI::App& program) {
       ->check(CLI::IsMember(std::vector<std::string>(kBoundarySteps.begin(), kBoundarySteps.end())));
   command->add_option("--label-maps", arguments->label_maps, "folder for color classes 0..8 as NNNN.png");
   command->add_option("--colors", arguments->colors, "color table, instead of the robot file's");
+  add_plugin_option(*command, arguments->plugins);
   command->add_option("--threads", arguments->threads, "for decoding and encoding; seeing itself takes one core")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
