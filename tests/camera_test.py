@@ -189,7 +189,7 @@ class Camera(ProgramTest):
         camera = {"env": self.camera(self.yuyv + " fps=20")}
         self.fails("run", "--source", "/dev/video43", "--colors", "div.yaml", says="/dev/video43: cannot be opened as a camera: no such file", **camera)
         self.fails("run", "--source", DEVICE, *ROBOT, "--range", "full", says="has full color range, the color table is for limited", **camera)
-        self.fails("run", "--source", DEVICE, *ROBOT, "--exposure", 100, says="has no exposure that can be set, camera.exposure must be left out", **camera)
+        self.fails("run", "--source", DEVICE, *ROBOT, "--exposure", 100, says="has no exposure that can be set; leave it out", **camera)
         self.fails("run", "--source", DEVICE, *ROBOT, "--camera-format", "nv12", says="offers yuyv, must be nv12", **camera)
         self.fails("run", "--source", DEVICE, *ROBOT, "--odometry", "udp:0.0.0.0:5000", says="only this machine is listened to", **camera)
         other = {"env": self.camera(self.yuyv.replace("width=384", "width=380") + " fps=20")}
