@@ -7,6 +7,7 @@ import os
 import re
 import select
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -160,6 +161,21 @@ class Camera(ProgramTest):
         self.assertGreater(dropped, 0)
         self.assertIn("replaced by newer ones", told)
 
+    def test_odometry_of_this_moment(self):
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as out:
+            out.bind(("127.0.0.1", 0))
+            port = out.getsockname()[1]
+        live = Live(self, self.yuyv + " fps=20", "run", *ROBOT, "--source", DEVICE, "--odometry", f"udp:127.0.0.1:{port}", "--output", "udp.jsonl")
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as out:
+            def send_until_scenes():
+                out.sendto(f'{{"t": {time.time()}, "x": 0, "y": 0, "theta": 0}}\n'.encode(), ("127.0.0.1", port))
+                path = self.folder / "udp.jsonl"
+                return path.exists() and path.read_bytes().count(b"\n") >= FRAMES
+            live.until(send_until_scenes, "scenes")
+        told = live.end()
+        known, frames = map(int, re.search(r"odometry: (\d+) of (\d+) frames", told).groups())
+        self.assertGreater(known, frames // 2, told)
+
     def test_ends_while_it_waits(self):
         live = Live(self, self.yuyv + " fps=40 unplug=5:1000", "run", *ROBOT, "--source", f"v4l2:{DEVICE}")
         live.until_told("is unplugged")
@@ -173,8 +189,9 @@ class Camera(ProgramTest):
         camera = {"env": self.camera(self.yuyv + " fps=20")}
         self.fails("run", "--source", "/dev/video43", "--colors", "div.yaml", says="/dev/video43: cannot be opened as a camera: no such file", **camera)
         self.fails("run", "--source", DEVICE, *ROBOT, "--range", "full", says="has full color range, the color table is for limited", **camera)
-        self.fails("run", "--source", DEVICE, *ROBOT, "--exposure", 100, says="has no exposure that can be set, camera.exposure must be left out", **camera)
+        self.fails("run", "--source", DEVICE, *ROBOT, "--exposure", 100, says="has no exposure that can be set; leave it out", **camera)
         self.fails("run", "--source", DEVICE, *ROBOT, "--camera-format", "nv12", says="offers yuyv, must be nv12", **camera)
+        self.fails("run", "--source", DEVICE, *ROBOT, "--odometry", "udp:0.0.0.0:5000", says="only this machine is listened to", **camera)
         other = {"env": self.camera(self.yuyv.replace("width=384", "width=380") + " fps=20")}
         self.fails("run", "--source", DEVICE, *ROBOT, says="is 380x172, the camera file is for 384x172", **other)
 
@@ -183,6 +200,7 @@ class Camera(ProgramTest):
         self.refuses("run", "--source", DEVICE, "--gain", "much", says="must be auto or a whole number")
         self.refuses("run", "--source", DEVICE, "--size", "640", says="must be like 640x480")
         self.refuses("run", "--source", "video.mkv", "--gain", "auto", says="belong to cameras")
+        self.refuses("run", "--source", "-", "--odometry", "-", says="cannot both be standard input")
         self.refuses("run", "--source", DEVICE, "--camera-format", "h264", says="mjpeg")
 
 

@@ -19,13 +19,13 @@
 #include "tassilo/app/commands.h"
 #include "tassilo/app/configuration_watch.h"
 #include "tassilo/app/live_view.h"
+#include "tassilo/app/odometry_input.h"
 #include "tassilo/app/robot_setup.h"
 #include "tassilo/app/run.h"
 #include "tassilo/app/run_summary.h"
 #include "tassilo/app/source_arguments.h"
 #include "tassilo/app/written_files.h"
 #include "tassilo/base/error.h"
-#include "tassilo/files/odometry_file.h"
 #include "tassilo/files/scene_json.h"
 #include "tassilo/overlay/overlay.h"
 #include "tassilo/record/image_folder.h"
@@ -201,15 +201,6 @@ double ms_between(std::chrono::steady_clock::time_point from, std::chrono::stead
   return std::chrono::duration<double, std::milli>(to - from).count();
 }
 
-/// All of the file, in the order of time; nothing where none is given.
-std::optional<Odometry> load_odometry(const std::string& file) {
-  if (file.empty()) return std::nullopt;
-  const std::vector<OdometrySample> samples = read_odometry(file);
-  Odometry odometry(std::max<std::size_t>(2, samples.size()));
-  for (const OdometrySample& sample : samples) odometry.add(sample);
-  return odometry;
-}
-
 /// One run, from the configuration to the summary.
 class Run {
  public:
@@ -218,10 +209,9 @@ class Run {
         live_(live),
         // Nothing but scene lines may go where scene lines go.
         report_(arguments.output == "-" ? stderr : stdout),
-        configuration_(load(live != nullptr ? live->changes() : VisionChanges{})) {
+        configuration_(load(live != nullptr ? live->changes() : VisionChanges{})),
+        odometry_(arguments.odometry, loses_nothing()) {
     check_paths(arguments_, configuration_->setup.read);
-    odometry_ = load_odometry(arguments_.odometry);
-    if (odometry_) summary_.set_odometry(odometry_->counts());
     workspace_.watch_boundary = !arguments_.overlay_step.empty();
   }
 
@@ -260,7 +250,8 @@ class Run {
     const double seconds = ms_between(begin, Clock::now()) / 1000;
     if (live_ != nullptr) live_->leave();
     progress_->finish();
-    tell(summary_.text(seconds, camera_summary(source_->camera_counts())));
+    if (odometry_.get() != nullptr) summary_.set_odometry(odometry_.get()->counts());
+    tell(summary_.text(seconds, camera_summary(source_->camera_counts()) + odometry_.summary()));
     if (interrupted) tell("\nended by a signal; all lines are complete\n");
     tell(sinks.names());
     if (damage) throw *damage;
@@ -278,6 +269,8 @@ class Run {
            (std::filesystem::is_regular_file(path, ignored) || std::filesystem::is_directory(path, ignored));
   }
   bool is_live() const { return arguments_.source.camera.has_value(); }
+  /// Do frames wait until somebody wants them?
+  bool loses_nothing() const { return !is_live() && arguments_.source.source.find("://") == std::string::npos; }
   const std::string& name() const { return info_.name; }
   void tell(const std::string& text) const {
     if (!arguments_.quiet) fmt::print(report_, "{}", text);
@@ -359,11 +352,13 @@ class Run {
     RecycledString changes = taken_over(frame.index);
     const Vision& vision = configuration_->vision;
     vision.check_frames(name_of(frame, name()), frame.view.width(), frame.view.height(), frame.range);
-    Scene scene = vision(frame, workspace_, odometry_ ? &*odometry_ : nullptr);
+    odometry_.update(frame.t, [] { return interrupted.load(); });
+    const Odometry* const odometry = odometry_.get();
+    Scene scene = vision(frame, workspace_, odometry);
     scene.timing.insert(scene.timing.begin(), {is_live() ? "wait" : "decode", decode_ms});
     if (!changes.empty()) scene.why.emplace_back("configuration", std::move(changes));
-    if (odometry_) {
-      const bool known = odometry_->at(frame.t).has_value();
+    if (odometry != nullptr) {
+      const bool known = odometry->at(frame.t).has_value();
       summary_.add_odometry(known);
       if (!known) scene.why.emplace_back("odometry", "missing at this time");
     }
@@ -401,7 +396,7 @@ class Run {
   LiveView* live_;
   std::FILE* report_;
   std::shared_ptr<const Configuration> configuration_;
-  std::optional<Odometry> odometry_;
+  OdometryInput odometry_;
   std::optional<FrameSource> source_;
   SourceInfo info_;  ///< Stays as it is once other threads may look at it.
   VisionWorkspace workspace_;
@@ -416,7 +411,8 @@ class Run {
 void add_run_options(CLI::App& command, RunArguments& arguments) {
   command.add_option("-r,--robot", arguments.robot, "robot.yaml: camera, colors, field and options of one robot");
   arguments.source.add_to(command);
-  command.add_option("--odometry", arguments.odometry, "odometry.jsonl on the clock of the frames");
+  command.add_option("--odometry", arguments.odometry,
+                     "odometry.jsonl on the clock of the frames; live: - for standard input, or udp:127.0.0.1:PORT");
   command.add_option("--start-pose", arguments.start_pose,
                      "X,Y,THETA[,SIGMA_XY,SIGMA_THETA] on the field, instead of the robot file's [m, rad]");
   command.add_option("-o,--output", arguments.output, "scenes as JSON Lines; - for standard output");
@@ -442,6 +438,8 @@ void understand(RunArguments& arguments) {
     throw CLI::ValidationError("--overlay-step", "says what is drawn, --overlay is missing");
   if (arguments.watch && arguments.robot.empty())
     throw CLI::ValidationError("--watch", "watches the robot file, --robot is missing");
+  if (arguments.odometry == "-" && arguments.source.source == "-")
+    throw CLI::ValidationError("--odometry", "and --source cannot both be standard input");
   arguments.source.understand();
   arguments.start = start_pose_from(arguments.start_pose);
 }

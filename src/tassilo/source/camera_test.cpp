@@ -174,7 +174,7 @@ TEST(CameraControls, WhatACameraLacksIsTold) {
   EXPECT_THAT(description(fake), HasSubstr("no exposure, no gain, no white balance"));
   CameraOptions options = small();
   options.gain = {.value = 5};
-  EXPECT_THAT(refusal(fake, options), HasSubstr("has no gain that can be set, camera.gain must be left out"));
+  EXPECT_THAT(refusal(fake, options), HasSubstr("has no gain that can be set; leave it out"));
   options.gain = {.automatic = true};
   EXPECT_THAT(refusal(fake, options), HasSubstr("has no automatic gain"));
   fake.controls = {{V4L2_CID_GAIN, {0, 100, 32, true}}, {V4L2_CID_AUTOGAIN, {0, 1, 1, true}}};

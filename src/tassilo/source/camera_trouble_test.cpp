@@ -107,6 +107,18 @@ TEST(LiveCamera, NothingReadyAndSignalsAreNoTrouble) {
   EXPECT_THAT(states(camera), ElementsAre());
 }
 
+TEST(LiveCamera, ASleepOfTheProgramIsNoStall) {
+  FakeCamera fake;
+  for (int k = 0; k < 3; ++k) {
+    fake.plan_frames(2);
+    fake.plan(Kind::asleep, 0, 30);
+  }
+  fake.plan_frames(1);
+  LiveCamera camera(fake, fake.path, small());
+  EXPECT_EQ(grab_all(camera, fake, 200).size(), 7U);
+  EXPECT_THAT(states(camera), ElementsAre());
+}
+
 TEST(LiveCamera, AStalledCameraIsStartedAgain) {
   FakeCamera fake;
   fake.plan_frames(2);
@@ -116,8 +128,8 @@ TEST(LiveCamera, AStalledCameraIsStartedAgain) {
   EXPECT_THAT(indices(grab_all(camera, fake)), ElementsAre(0, 1, 2, 3));
   const std::vector<CameraNews> news = camera.news();
   ASSERT_EQ(news.size(), 2U);
-  EXPECT_EQ(news[0].text, "/dev/video3 (Fake Cam) has sent no whole frame for 1.1 s, it is started again");
-  EXPECT_THAT(news[1].text, HasSubstr("delivers frames again after 1.1 s"));
+  EXPECT_EQ(news[0].text, "/dev/video3 (Fake Cam) has sent no whole frame for 1.2 s, it is started again");
+  EXPECT_THAT(news[1].text, HasSubstr("delivers frames again after 1.2 s"));
   EXPECT_EQ(fake.starts, 2);
   EXPECT_EQ(camera.counts().stalls, 1);
 }

@@ -58,6 +58,7 @@ void LiveCamera::await_first_frame() {
   const double now = calls_.monotonic_s();
   overdue_at_ = now + std::max(kFirstFrameSeconds, frame_patience(format_));
   next_try_ = now + kRestartSeconds;
+  is_doubtful_ = false;
   last_sequence_.reset();
 }
 
@@ -73,7 +74,7 @@ std::optional<GrabbedFrame> LiveCamera::grab(int patience_ms) {
     case Dequeued::Outcome::broken:
       index_of(dequeued.sequence);
       ++counts_.broken;
-      nothing_came();  // a camera that sends nothing else needs to be started again
+      nothing_came();  // a camera that sends nothing else must be started again
       break;
     case Dequeued::Outcome::nothing:
       nothing_came();
@@ -123,6 +124,7 @@ void LiveCamera::frame_came() {
   const double now = calls_.monotonic_s();
   overdue_at_ = now + frame_patience(format_);
   failed_starts_ = 0;
+  is_doubtful_ = false;
   const double before = std::exchange(last_frame_at_, now);
   if (state_ == CameraState::streaming) return;
   const std::string after = " after " + seconds_text(now - before);
@@ -132,6 +134,8 @@ void LiveCamera::frame_came() {
 void LiveCamera::nothing_came() {
   const double now = calls_.monotonic_s();
   if (now < overdue_at_) return;
+  // The program itself may have slept: what came meanwhile is looked at first.
+  if (!std::exchange(is_doubtful_, true)) return;
   stall("has sent no whole frame for " + seconds_text(now - last_frame_at_));
 }
 
@@ -149,6 +153,7 @@ void LiveCamera::stall(const std::string& reason) {
   if (now < next_try_) return;
   next_try_ = now + kRestartSeconds;
   overdue_at_ = now + frame_patience(format_);
+  is_doubtful_ = false;
   try {
     if (++failed_starts_ > kRestarts) {
       stream_->close();

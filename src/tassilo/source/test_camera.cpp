@@ -81,6 +81,11 @@ int FakeCamera::poll(int fd, int timeout_ms) {
     steps.pop_front();
   }
   if (!present_ || !streaming_) return POLLERR;
+  if (!steps.empty() && steps.front().kind == Kind::asleep) {
+    now += steps.front().seconds;
+    steps.pop_front();
+    return 0;
+  }
   if (!steps.empty() && steps.front().kind == Kind::silence) {
     if (silent_until_ == 0) silent_until_ = now + steps.front().seconds;
     if (until < silent_until_) return nothing();
@@ -253,7 +258,9 @@ int FakeCamera::dequeue(v4l2_buffer& buffer) {
   }
   if (steps.empty() || queue_.empty() || now < next_frame_at_) return EAGAIN;
   const CameraStep step = steps.front();
-  if (step.kind == Kind::silence || step.kind == Kind::until_restart || step.kind == Kind::unplug) return EAGAIN;
+  if (step.kind == Kind::silence || step.kind == Kind::asleep || step.kind == Kind::until_restart ||
+      step.kind == Kind::unplug)
+    return EAGAIN;
   steps.pop_front();
   if (step.kind == Kind::again) return EAGAIN;
   if (step.kind == Kind::signal) return EINTR;

@@ -25,6 +25,7 @@ struct CameraStep {
     signal,         ///< A signal interrupts the call: EINTR.
     fails,          ///< Reading fails with errno `number`.
     silence,        ///< Nothing for `seconds`.
+    asleep,         ///< The program sleeps for `seconds`, frames come meanwhile.
     until_restart,  ///< Nothing until it is started again.
     unplug,         ///< Gone for `seconds`, then `number` is what opening fails with once more (0: nothing).
   };

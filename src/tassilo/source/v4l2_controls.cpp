@@ -12,7 +12,6 @@ namespace {
 /// One setting: its value, and the switch that lets the camera choose.
 struct Setting {
   const char* name;
-  const char* option;
   const char* unit;
   __u32 value_id, switch_id;
   std::array<int, 2> automatic;  ///< Switch positions that mean automatic, tried in this order.
@@ -20,24 +19,21 @@ struct Setting {
   CameraControl CameraOptions::*wanted;
 };
 
-constexpr std::array kSettings{
-    Setting{"exposure",
-            "exposure",
-            "",
-            V4L2_CID_EXPOSURE_ABSOLUTE,
-            V4L2_CID_EXPOSURE_AUTO,
-            {V4L2_EXPOSURE_AUTO, V4L2_EXPOSURE_APERTURE_PRIORITY},
-            V4L2_EXPOSURE_MANUAL,
-            &CameraOptions::exposure},
-    Setting{"gain", "gain", "", V4L2_CID_GAIN, V4L2_CID_AUTOGAIN, {1, 1}, 0, &CameraOptions::gain},
-    Setting{"white balance",
-            "white_balance",
-            " K",
-            V4L2_CID_WHITE_BALANCE_TEMPERATURE,
-            V4L2_CID_AUTO_WHITE_BALANCE,
-            {1, 1},
-            0,
-            &CameraOptions::white_balance}};
+constexpr std::array kSettings{Setting{"exposure",
+                                       "",
+                                       V4L2_CID_EXPOSURE_ABSOLUTE,
+                                       V4L2_CID_EXPOSURE_AUTO,
+                                       {V4L2_EXPOSURE_AUTO, V4L2_EXPOSURE_APERTURE_PRIORITY},
+                                       V4L2_EXPOSURE_MANUAL,
+                                       &CameraOptions::exposure},
+                               Setting{"gain", "", V4L2_CID_GAIN, V4L2_CID_AUTOGAIN, {1, 1}, 0, &CameraOptions::gain},
+                               Setting{"white balance",
+                                       " K",
+                                       V4L2_CID_WHITE_BALANCE_TEMPERATURE,
+                                       V4L2_CID_AUTO_WHITE_BALANCE,
+                                       {1, 1},
+                                       0,
+                                       &CameraOptions::white_balance}};
 
 class Controls {
  public:
@@ -60,9 +56,8 @@ class Controls {
     if (ask(VIDIOC_G_CTRL, &control) != 0) return std::nullopt;
     return control.value;
   }
-  [[noreturn]] void lacks(const std::string& what, const char* option) const {
-    throw Error(device_.path() + " (" + device_.name() + ")",
-                "has no " + what + ", camera." + option + " must be left out");
+  [[noreturn]] void lacks(const std::string& what) const {
+    throw Error(device_.path() + " (" + device_.name() + ")", "has no " + what + "; leave it out");
   }
 
  private:
@@ -88,8 +83,8 @@ std::string set_switch(const Controls& controls, const Setting& setting, bool au
 std::string apply(const Controls& controls, const Setting& setting, const CameraControl& wanted) {
   const auto range = controls.range(setting.value_id);
   const bool has_switch = controls.range(setting.switch_id).has_value();
-  if (wanted.automatic && !has_switch) controls.lacks(std::string("automatic ") + setting.name, setting.option);
-  if (wanted.value && !range) controls.lacks(std::string(setting.name) + " that can be set", setting.option);
+  if (wanted.automatic && !has_switch) controls.lacks(std::string("automatic ") + setting.name);
+  if (wanted.value && !range) controls.lacks(std::string(setting.name) + " that can be set");
   if (!range && !has_switch) return std::string("no ") + setting.name;
 
   std::string remark = has_switch ? set_switch(controls, setting, wanted.automatic) : "";

@@ -30,7 +30,9 @@ std::string reason_of(int code) {
 bool is_gone(int code) { return code == ENODEV || code == ENXIO || code == ENOENT || code == EBADF; }
 
 DeviceError::DeviceError(const std::string& path, const std::string& action, int error)
-    : Error(path, "cannot " + action + ": " + reason_of(error)), code_(error) {}
+    : Error(path,
+            "cannot " + action + ": " + reason_of(error) + (error == EBUSY ? "; another program may be using it" : "")),
+      code_(error) {}
 
 V4l2Device::V4l2Device(SystemCalls& calls, std::string path)
     : calls_(calls), path_(std::move(path)), fd_(calls_.open(path_)) {

@@ -73,6 +73,7 @@ class LiveCamera {
   double next_try_ = 0;       ///< Not earlier to start it again or to look for it.
   double last_frame_at_ = 0;  ///< Or of opening.
   int failed_starts_ = 0;
+  bool is_doubtful_ = false;                    ///< A frame is overdue, and it was looked for once.
   bool counts_arrival_ = false;                 ///< The last frame's time was that of its arrival.
   std::optional<std::uint32_t> last_sequence_;  ///< Of this stream.
   std::int64_t next_index_ = 0;
