@@ -11,12 +11,14 @@
 #include "tassilo/app/robot_setup.h"
 #include "tassilo/base/kernel.h"
 #include "tassilo/files/field_file.h"
+#include "tassilo/source/camera.h"
 #include "tassilo/vision/stages.h"
 
 namespace tassilo {
 namespace {
 
 struct InfoArguments {
+  bool cameras = false;
   bool options = false, stages = false;
   std::string robot;
   std::vector<std::string> plugins;
@@ -104,8 +106,44 @@ void print_overview() {
   for (const auto& folder : config_folders()) fmt::print("  {}\n", folder.string());
 }
 
+/// "640x480 (30), 1280x720 (10)" of all modes of one format.
+std::string sizes_of(const CameraInfo& camera, const std::string& format) {
+  std::string text;
+  for (const CameraMode& mode : camera.modes) {
+    if (mode.format != format) continue;
+    text += fmt::format("{}{}x{}", text.empty() ? "" : ", ", mode.width, mode.height);
+    if (mode.fps > 0) text += fmt::format(" ({:.4g})", mode.fps);
+  }
+  return text;
+}
+
+void print_cameras() {
+  const std::vector<CameraInfo> cameras = list_cameras();
+  if (cameras.empty())
+    fmt::print(
+        "no camera: none of /dev/video0 to /dev/video255 captures video; is it plugged in, and in a container, is "
+        "the device passed on?\n");
+  for (const CameraInfo& camera : cameras) {
+    if (camera.name.empty()) {
+      fmt::print("{}: cannot be opened: {}{}\n", camera.path, camera.problem,
+                 camera.problem == "permission denied" ? "; is the user in the group video?" : "");
+      continue;
+    }
+    fmt::print("{}: {}, {}\n", camera.path, camera.name, camera.bus);
+    std::string last;
+    for (const CameraMode& mode : camera.modes) {
+      if (mode.format == last) continue;
+      last = mode.format;
+      fmt::print("  {:6} {}{}\n", mode.format, sizes_of(camera, mode.format), mode.usable ? "" : "  (not for Tassilo)");
+    }
+  }
+  if (!cameras.empty()) fmt::print("\nformat, sizes [px], highest rate [frames/s]\n");
+}
+
 int info_command(const InfoArguments& arguments) {
-  if (arguments.stages || arguments.options) {
+  if (arguments.cameras) {
+    print_cameras();
+  } else if (arguments.stages || arguments.options) {
     const Settable all = settable(arguments);
     arguments.stages ? print_stages(all, arguments.robot) : print_options(all);
   } else {
@@ -126,6 +164,11 @@ Command add_info(CLI::App& program) {
       ->excludes(options);
   command->add_option("-r,--robot", arguments->robot, "robot.yaml: also tell what it chooses");
   add_plugin_option(*command, arguments->plugins);
+  command
+      ->add_flag("--cameras", arguments->cameras,
+                 "list the cameras of this machine: device, name, formats, sizes, rates")
+      ->excludes("--options")
+      ->excludes("--stages");
   command->callback([arguments] {
     if (!arguments->options && !arguments->stages && !(arguments->robot.empty() && arguments->plugins.empty()))
       throw CLI::ValidationError("--robot and --plugin", "tell what the vision can be set to, --stages is missing");
