@@ -149,10 +149,16 @@ function publish(channel, message) {
   }
 }
 
+/// The JPEG with its frame as a comment, which pages freeze it with its scene by.
+function numbered(jpeg, frame) {
+  const text = Buffer.from(`frame ${frame}`);
+  return Buffer.concat([jpeg.subarray(0, 2), Buffer.from([0xff, 0xfe, 0, text.length + 2]), text, jpeg.subarray(2)]);
+}
+
 setInterval(() => {
   ++state.frame;
   publish("/ws/scene", JSON.stringify(scene_now()));
-  publish("/ws/picture", pictures[state.frame % pictures.length]);
+  publish("/ws/picture", numbered(pictures[state.frame % pictures.length], state.frame));
 }, 1000 / rate_hz);
 
 server.listen(Number(options.port), "127.0.0.1", () => console.log(`http://127.0.0.1:${server.address().port}/`));
