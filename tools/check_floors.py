@@ -45,7 +45,7 @@ THIRD_PARTY = {
     "team": ["dds/", *POSIX],
     "sim": ["embree3/"],
     "web": ["boost/", *POSIX],
-    "app": ["CLI/", "fmt/", "spdlog/", *POSIX],
+    "app": ["CLI/", "fmt/", "spdlog/", "nlohmann/", "qrencode.h", *POSIX],
 }
 # Instructions of one kind of machine: only in the sources of kernels, which are named after it.
 INTRINSICS = ["immintrin.h", "arm_neon.h"]

@@ -78,7 +78,8 @@ RobotSetup read_robot_setup(const std::string& robot_file, const std::string& co
   for (const fs::path& plugin : robot.plugins) setup.read.push_back({"plug-in", plugin.string()});
   for (const std::string& plugin : plugins) setup.read.push_back({"--plugin", plugin});
   setup.registry = registry_of(robot, robot_file, plugins);
-  setup.vision.options = vision_options(robot.vision, setup.registry);
+  setup.settings = robot.vision;
+  setup.vision.options = vision_options(setup.settings, setup.registry);
   if (robot.start_pose) setup.vision.start_pose = gaussian_of(*robot.start_pose);
   return setup;
 }

@@ -2,6 +2,7 @@
 
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tassilo/app/written_files.h"
@@ -13,7 +14,8 @@ namespace tassilo {
 /// What a robot sees with, and the files that said so.
 struct RobotSetup {
   VisionSetup vision;
-  StageRegistry registry;  ///< What the vision chooses its stages from.
+  StageRegistry registry;                                 ///< What the vision chooses its stages from.
+  std::vector<std::pair<std::string, Setting>> settings;  ///< Below `vision:`, as written.
   std::vector<NamedFile> read;
 };
 

@@ -84,6 +84,7 @@ class Listener : public std::enable_shared_from_this<Listener> {
     timeout.keep_alive_pings = true;
     socket_.set_option(timeout);
     socket_.read_message_max(kMaxFromSocket);
+    socket_.auto_fragment(false);  // a picture in one piece
     socket_.async_accept(request, [self = shared_from_this()](ErrorCode error) {
       if (error) return;
       self->channel_.insert(self.get());
