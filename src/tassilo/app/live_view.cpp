@@ -202,7 +202,8 @@ void LiveView::draw_pictures() {
     constexpr int quality = 80;
     server_.publish(
         kPicture,
-        std::make_shared<const std::string>(encode_jpeg(picture.pixels, picture.width, picture.height, quality)),
+        std::make_shared<const std::string>(encode_jpeg(picture.pixels, picture.width, picture.height, quality,
+                                                        "frame " + std::to_string(snapshot.scene.frame))),
         WebServer::Message::binary);
   }
 }
