@@ -12,6 +12,7 @@ using Command = std::function<int()>;
 
 Command add_run(CLI::App& program);
 Command add_train_colors(CLI::App& train);
+Command add_calibrate(CLI::App& program);
 Command add_eval(CLI::App& program);
 Command add_compare(CLI::App& program);
 Command add_info(CLI::App& program);
