@@ -27,6 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostImages = 500;
+constexpr double kScreenPixels = 4000;  ///< Of targets as PNG. [px/m]
 
 struct IntrinsicsArguments {
   std::vector<std::string> images, targets;
@@ -187,8 +188,8 @@ struct TargetArguments {
 int target_command(const TargetArguments& arguments) {
   const Target target = target_from_text(arguments.target);
   const std::string extension = fs::path(arguments.output).extension().string();
-  if (extension != ".svg" && extension != ".pdf")
-    throw Error("--output", "is " + arguments.output + ", must end in .svg or .pdf");
+  if (extension != ".svg" && extension != ".pdf" && extension != ".png")
+    throw Error("--output", "is " + arguments.output + ", must end in .svg, .pdf or .png");
   TargetSheet sheet;
   sheet.marks = target.kind == TargetKind::dots ? TargetSheet::Marks::dots : TargetSheet::Marks::checkerboard;
   sheet.columns = target.columns;
@@ -196,6 +197,11 @@ int target_command(const TargetArguments& arguments) {
   sheet.pitch = target.pitch;
   sheet.radius = target.radius;
   sheet.caption = to_text(target) + " - print at 100 %, then measure the ruler";
+  if (extension == ".png") {
+    Picture picture = target_picture(sheet, kScreenPixels);
+    write_png_rgb(arguments.output, {picture.width, picture.height, std::move(picture.pixels)});
+    return 0;
+  }
   write_atomically(arguments.output, target_sheet(sheet, extension == ".svg" ? SheetFormat::svg : SheetFormat::pdf));
   return 0;
 }
@@ -247,7 +253,10 @@ Command add_target(CLI::App& calibrate) {
   auto* command = calibrate.add_subcommand("target", "a target to print, to scale");
   auto arguments = std::make_shared<TargetArguments>();
   command->add_option("target", arguments->target, kTargetHelp)->required();
-  command->add_option("-o,--output", arguments->output, "target.svg or target.pdf to write")->required();
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "target.svg or target.pdf to write, or target.png with 4 pixels a millimetre")
+      ->required();
   command->callback([arguments] {
     try {
       target_from_text(arguments->target);

@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <memory>
 #include <numbers>
 
@@ -83,38 +86,73 @@ void draw_ruler(cairo_t* cairo, double width, const std::string& caption) {
   draw_text(cairo, 0, .0095, caption);
 }
 
+/// Width and height. [m]
+struct Page {
+  double width = 0, height = 0, around = 0;  ///< around: from the first point to the left and upper edge.
+};
+
+Page page_of(const TargetSheet& sheet) {
+  expects(sheet.columns >= 1 && sheet.rows >= 1 && sheet.pitch > 0 && sheet.radius >= 0, "target_sheet: valid sizes");
+  const double around = (border(sheet) + kMargin) * sheet.pitch;
+  return {(sheet.columns - 1) * sheet.pitch + 2 * around, (sheet.rows - 1) * sheet.pitch + 2 * around + kRulerHeight,
+          around};
+}
+
+void draw_page(cairo_surface_t* surface, const TargetSheet& sheet, double scale) {
+  const Page page = page_of(sheet);
+  const std::unique_ptr<cairo_t, Free> cairo(cairo_create(surface));
+  cairo_scale(cairo.get(), scale, scale);
+  cairo_set_source_rgb(cairo.get(), 1, 1, 1);
+  cairo_paint(cairo.get());
+  cairo_set_source_rgb(cairo.get(), 0, 0, 0);
+  cairo_save(cairo.get());
+  cairo_translate(cairo.get(), page.around, page.around);
+  if (sheet.marks == TargetSheet::Marks::dots)
+    draw_dots(cairo.get(), sheet);
+  else
+    draw_squares(cairo.get(), sheet);
+  cairo_restore(cairo.get());
+  cairo_translate(cairo.get(), .4 * page.around, page.height - kRulerHeight + .005);
+  draw_ruler(cairo.get(), page.width - .8 * page.around, sheet.caption);
+}
+
 }  // namespace
 
 std::string target_sheet(const TargetSheet& sheet, SheetFormat format) {
-  expects(sheet.columns >= 1 && sheet.rows >= 1 && sheet.pitch > 0 && sheet.radius >= 0, "target_sheet: valid sizes");
-  const double around = (border(sheet) + kMargin) * sheet.pitch;
-  const double width = (sheet.columns - 1) * sheet.pitch + 2 * around;
-  const double height = (sheet.rows - 1) * sheet.pitch + 2 * around + kRulerHeight;
+  const Page page = page_of(sheet);
   std::string bytes;
   const auto make =
       format == SheetFormat::svg ? cairo_svg_surface_create_for_stream : cairo_pdf_surface_create_for_stream;
   const std::unique_ptr<cairo_surface_t, Free> surface(
-      make(append, &bytes, width * kPointsPerMetre, height * kPointsPerMetre));
+      make(append, &bytes, page.width * kPointsPerMetre, page.height * kPointsPerMetre));
   if (format == SheetFormat::pdf)
     cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_TITLE, sheet.caption.c_str());
-  {
-    const std::unique_ptr<cairo_t, Free> cairo(cairo_create(surface.get()));
-    cairo_scale(cairo.get(), kPointsPerMetre, kPointsPerMetre);
-    cairo_set_source_rgb(cairo.get(), 1, 1, 1);
-    cairo_paint(cairo.get());
-    cairo_set_source_rgb(cairo.get(), 0, 0, 0);
-    cairo_save(cairo.get());
-    cairo_translate(cairo.get(), around, around);
-    if (sheet.marks == TargetSheet::Marks::dots)
-      draw_dots(cairo.get(), sheet);
-    else
-      draw_squares(cairo.get(), sheet);
-    cairo_restore(cairo.get());
-    cairo_translate(cairo.get(), .4 * around, height - kRulerHeight + .005);
-    draw_ruler(cairo.get(), width - .8 * around, sheet.caption);
-  }
+  draw_page(surface.get(), sheet, kPointsPerMetre);
   cairo_surface_finish(surface.get());
   return bytes;
+}
+
+Picture target_picture(const TargetSheet& sheet, double pixels_per_metre) {
+  expects(pixels_per_metre > 0, "target_picture: a scale");
+  const Page page = page_of(sheet);
+  Picture picture{static_cast<int>(std::ceil(page.width * pixels_per_metre)),
+                  static_cast<int>(std::ceil(page.height * pixels_per_metre)),
+                  {}};
+  const std::unique_ptr<cairo_surface_t, Free> surface(
+      cairo_image_surface_create(CAIRO_FORMAT_RGB24, picture.width, picture.height));
+  draw_page(surface.get(), sheet, pixels_per_metre);
+  cairo_surface_flush(surface.get());
+  const unsigned char* pixels = cairo_image_surface_get_data(surface.get());
+  const int stride = cairo_image_surface_get_stride(surface.get());
+  picture.pixels.reserve(std::size_t{3} * static_cast<std::size_t>(picture.width) *
+                         static_cast<std::size_t>(picture.height));
+  for (int r = 0; r < picture.height; ++r)
+    for (int c = 0; c < picture.width; ++c) {
+      std::uint32_t rgb = 0;
+      std::memcpy(&rgb, pixels + std::ptrdiff_t{r} * stride + 4 * c, sizeof rgb);
+      for (const int shift : {16, 8, 0}) picture.pixels.push_back(static_cast<std::uint8_t>(rgb >> shift & 255));
+    }
+  return picture;
 }
 
 }  // namespace tassilo

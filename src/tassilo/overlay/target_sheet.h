@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "tassilo/overlay/picture.h"
+
 namespace tassilo {
 
 /// A calibration target to be printed, to scale.
@@ -13,7 +15,7 @@ struct TargetSheet {
   Marks marks = Marks::dots;
   int columns = 7, rows = 7;         ///< Of dots or inner corners. >= 1
   double pitch = .04, radius = .01;  ///< From point to point, and of a dot. [m], > 0
-  std::string caption;               ///< Beside the ruler.
+  std::string caption = {};               ///< Beside the ruler.
 };
 
 enum class SheetFormat { svg, pdf };
@@ -21,5 +23,8 @@ enum class SheetFormat { svg, pdf };
 /// The bytes of a page as large as the target with a white margin of .4 pitches, and below it a ruler of 100 mm (or as
 /// many as fit) to check the print with.
 std::string target_sheet(const TargetSheet& sheet, SheetFormat format);
+
+/// The same page as a picture, for a screen that shows it to scale. [px/m], > 0
+Picture target_picture(const TargetSheet& sheet, double pixels_per_metre);
 
 }  // namespace tassilo

@@ -112,10 +112,10 @@ std::vector<std::string> warnings_of(const Intrinsics& result) {
                   std::to_string(kEnoughViews) + ", tilted differently and all over the image");
   const Coverage& coverage = result.coverage;
   if (coverage.share < kEnoughShare)
-    out.push_back("points cover " + text("%.0f", 100 * coverage.share) + " % of the image, should be at least " +
+    out.push_back("points cover " + text("%.1f", 100 * coverage.share) + " % of the image, should be at least " +
                   text("%.0f", 100 * kEnoughShare) + " %");
   if (coverage.reach < kEnoughReach)
-    out.push_back("points reach " + text("%.0f", 100 * coverage.reach) +
+    out.push_back("points reach " + text("%.1f", 100 * coverage.reach) +
                   " % of the way to the farthest corner, should be at least " + text("%.0f", 100 * kEnoughReach) +
                   " %: beyond them the lens is a guess");
   double tilt = 0;
