@@ -24,7 +24,7 @@ if(NOT python_reason)
   elseif(TASSILO_TESTS)
     foreach(test region region_features contour image color vision limits package)
       add_test(NAME python.${test} COMMAND ${CMAKE_COMMAND} -E env PYTHONPATH=${PROJECT_BINARY_DIR}/python
-        PYTHONDONTWRITEBYTECODE=1 TASSILO_PROGRAM=$<TARGET_FILE:tassilo>
+        PYTHONDONTWRITEBYTECODE=1 TASSILO_PROGRAM=$<TARGET_FILE:tassilo> TASSILO_PLUGIN=$<TARGET_FILE:test_plugin>
         ${Python_EXECUTABLE} -m pytest -q -p no:cacheprovider python/tests/test_${test}.py
         WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
     endforeach()

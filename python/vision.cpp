@@ -20,7 +20,7 @@ constexpr int kMaxVisionSize = 32000;
 
 /// A Vision with its workspace, and the lock that lets one thread at a time use it.
 struct PythonVision {
-  explicit PythonVision(const VisionSetup& setup) : vision(setup) {}
+  PythonVision(const VisionSetup& setup, const StageRegistry& registry) : vision(setup, registry) {}
 
   Vision vision;
   VisionWorkspace workspace = {};
@@ -64,12 +64,13 @@ SharedVision vision_from_parts(const py::object& colors, const py::object& camer
   }
   setup.options = options_of(options);
   py::gil_scoped_release unlocked;
-  return std::make_shared<PythonVision>(setup);
+  return std::make_shared<PythonVision>(setup, built_in_stages());
 }
 
 SharedVision vision_from_robot(const std::filesystem::path& path, const std::optional<std::filesystem::path>& colors) {
   py::gil_scoped_release unlocked;
-  return std::make_shared<PythonVision>(read_robot_setup(path.string(), colors ? colors->string() : "").vision);
+  const RobotSetup setup = read_robot_setup(path.string(), colors ? colors->string() : "");
+  return std::make_shared<PythonVision>(setup.vision, setup.registry);
 }
 
 void check_frame(const Frame& frame) {
@@ -113,12 +114,24 @@ py::array_t<std::uint8_t> draw(const PythonVision& self, const Frame& frame, con
   return array_of(std::move(picture.pixels), {picture.height, picture.width, 3});
 }
 
-py::list option_list() {
+py::list list_of(const std::vector<OptionInfo>& infos) {
   py::list list;
-  for (const OptionInfo& info : vision_option_infos())
+  for (const OptionInfo& info : infos)
     list.append(py::dict("key"_a = std::string(info.key), "default"_a = info.standard, "low"_a = info.low,
                          "high"_a = info.high, "whole"_a = info.whole, "unit"_a = std::string(info.unit),
                          "meaning"_a = std::string(info.meaning)));
+  return list;
+}
+
+py::list stage_list() {
+  py::list list;
+  for (const StageInfo& info : stage_infos(built_in_stages())) {
+    py::list alternatives;
+    for (const StageInfo::Alternative& way : info.alternatives)
+      alternatives.append(py::dict("name"_a = way.name, "meaning"_a = way.meaning, "options"_a = list_of(way.options)));
+    list.append(py::dict("key"_a = std::string(info.key), "meaning"_a = std::string(info.meaning),
+                         "alternatives"_a = alternatives, "options"_a = list_of(info.options)));
+  }
   return list;
 }
 
@@ -128,7 +141,8 @@ void bind_vision(py::module_& module) {
   py::class_<PythonVision, SharedVision>(module, "Vision", R"(The whole vision of one robot: vision(frame) is a scene.
 
 From parts: the color table and, for everything in metres, camera and field; each the object or the path of its file
-(field also the name of a shipped one). options: as below `vision:` in robot.yaml, see vision_options.)")
+(field also the name of a shipped one). options: as below `vision:` in robot.yaml, see vision_options, and
+stages for those that are names.)")
       .def(py::init(&vision_from_parts), "From parts.", "colors"_a, "camera"_a = py::none(), "field"_a = "msl98",
            "options"_a = py::dict())
       .def_static("from_robot", &vision_from_robot,
@@ -142,7 +156,13 @@ From parts: the color table and, for everything in metres, camera and field; eac
       .def("draw", &draw,
            "The frame with what was seen in it, beside it the view from above: (height, width, 3) of R, G, B.",
            "frame"_a, "scene"_a, "scale"_a = 0, "bird_view"_a = true);
-  module.def("vision_options", &option_list, "The options of Vision: key, default, low, high, whole, unit, meaning.");
+  module.def(
+      "vision_options", [] { return list_of(vision_option_infos()); },
+      "The options of Vision: key, default, low, high, whole, unit, meaning.");
+  module.def(
+      "stages", &stage_list,
+      "The stages of Vision in the order they run: key, meaning, options as in vision_options, and alternatives, "
+      "the default first: name, meaning, options of their own. One is chosen by the option key=name.");
 }
 
 }  // namespace tassilo::python

@@ -83,6 +83,28 @@ class Usage(CliTest):
         self.assertRegex(self.succeeds("--version").out, r"^\d+\.\d+\.\d+\n$")
         self.assertIn("mount_angle_sigma", self.succeeds("info", "--options").out)
 
+    def test_stages(self):
+        told = self.succeeds("info", "--stages").out
+        self.assertRegex(told, r"\nfield_boundary: .+\n  \* subpixel .+\n    skeleton .+\n    boundary_reach +3  px +0.1 .. 100 ")
+        self.write("stages.yaml", "vision: {field_boundary: skeleton, ball_max: 2}\n")
+        told = self.succeeds("info", "--stages", "--robot", "stages.yaml").out
+        self.assertRegex(told, r"\n    subpixel .+\n  \* skeleton ")
+        self.assertRegex(told, r"\n    ball_max +5 .+; here 2\n")
+        self.assertRegex(self.succeeds("info", "--options", "--robot", "stages.yaml").out, r"\nfield_boundary +subpixel, skeleton; here skeleton\n")
+        self.write("stages.yaml", "vision: {field_boundary: skeletom}\n")
+        self.fails("info", "--stages", "--robot", "stages.yaml", says=("stages.yaml:1:26", "did you mean skeleton?"))
+        self.refuses("info", "--stages", "--options", says="excludes")
+        self.refuses("info", "--robot", "stages.yaml", says="--stages is missing")
+
+    def test_plugins_that_are_none(self):
+        self.write("junk.so", "no library")
+        self.write("plugins.yaml", "plugins: [none.so]\n")
+        for verb in (("info", "--stages"), self.run_clip()):
+            with self.subTest(verb):
+                self.fails(*verb, "--plugin", "none.so", says="none.so: does not exist")
+                self.fails(*verb, "--plugin", "junk.so", says="junk.so: cannot be loaded as a shared library: file too short")
+                self.fails(*verb, "--robot", "plugins.yaml", says=("plugins.yaml: names none.so as a plug-in", "does not exist"))
+
     def test_kernels(self):
         self.assertIn("kernel: ", self.succeeds("info").out)
         plain = {**os.environ, "TASSILO_KERNEL": "plain"}

@@ -125,6 +125,17 @@ class Run(ProgramTest):
         expected = [without_timing(s) for s in self.scenes("d01_approach.jsonl")]
         self.assertEqual([without_timing(s) for s in self.scenes("any_order.jsonl")], expected)
 
+    def test_odometry_on_standard_input_gives_the_same_scenes(self):
+        run = ("run", *robot("d01_approach"), "--source", DATA / "d01_approach/video.mkv", "--odometry", "-", "--colors", "div.yaml", "--output", "piped.jsonl")
+        lines = (DATA / "d01_approach/odometry.jsonl").read_text()
+        result = self.succeeds(*run, input=(lines + '{"t": 99}\nnonsense\n').encode())
+        self.assertIn("odometry: 40 of 40 frames\n", result.out)
+        expected = [without_timing(s) for s in self.scenes("d01_approach.jsonl")]
+        self.assertEqual([without_timing(s) for s in self.scenes("piped.jsonl")], expected)
+        result = self.succeeds(*run, input=b'nonsense\n{"t": 99}\n')
+        self.assertIn("odometry: 2 of 2 lines refused, the first: standard input:1: ", result.out)
+        self.assertIn("odometry: 0 of 40 frames, 40 missing", result.out)
+
     def test_raw_frames_on_standard_input_give_the_same_scenes(self):
         raw = raw_bytes(DATA / "d01_approach/video.mkv", "yuv422p", CLIP_FRAMES)
         self.succeeds("run", *robot("d01_approach"), "--odometry", DATA / "d01_approach/odometry.jsonl", "--colors", "div.yaml", "--source", "-", "--format", "yuv422p", "--size", "384x172", "--range",

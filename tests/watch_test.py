@@ -5,6 +5,7 @@ usage: tests/watch_test.py PROGRAM [unittest arguments]
 """
 import json
 import os
+import pathlib
 import select
 import shutil
 import subprocess
@@ -16,6 +17,7 @@ from program import DATA, TIMEOUT_S, ProgramTest, main, raw_bytes, without_timin
 FRAMES = 40
 FRAME_BYTES = 384 * 172 * 2
 RECORDING = DATA / "d01_approach"
+PLUGIN = os.environ.get("TASSILO_PLUGIN")
 
 
 class Live:
@@ -130,6 +132,36 @@ class Watch(ProgramTest):
         self.robot("localization: boundary", field="own.yaml")
         self.assertIn("walls", live.until_told("refused"))
         live.finish()
+
+    @unittest.skipUnless(PLUGIN, "TASSILO_PLUGIN, the plug-in for tests, is not set")
+    def test_plugins_come_and_are_exchanged(self):
+        def put(plugin):
+            """As linkers do: another file of the same name."""
+            shutil.copy(plugin, self.folder / "new.so")
+            os.replace(self.folder / "new.so", self.folder / "blind.so")
+
+        put(PLUGIN)
+        self.robot("ball_max: 3")
+        live = Live(self)
+        live.feed()
+        self.robot("balls: blind")
+        self.assertIn("must be sphere", live.until_told("refused"))
+        (self.folder / "robot.yaml").write_text("camera: camera.yaml\nfield: msl98\nplugins: [blind.so]\nvision: {balls: blind}\n")
+        live.until_told("taken over")
+        blind_from = live.fed
+        live.feed()
+        put(pathlib.Path(PLUGIN).with_name("test_plugin_of_another_version.so"))
+        self.assertIn("was built for 'tassilo 0.0.1", live.until_told("refused"))
+        put(PLUGIN)
+        live.until_told("taken over")
+        blind_until = live.fed
+        self.robot("ball_max: 3")
+        live.until_told("taken over")
+        live.feed()
+        live.finish()
+        scenes = self.scenes("live.jsonl")
+        self.assertEqual({scene["why"].get("balls") for scene in scenes[blind_from:blind_until]}, {"blind"})
+        self.assertTrue(scenes[0]["balls"] and scenes[-1]["balls"])
 
     def test_nothing_changes_without_a_change(self):
         self.robot("localization: model")

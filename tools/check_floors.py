@@ -33,7 +33,7 @@ thread tuple type_traits typeindex typeinfo unordered_map unordered_set utility 
 """.split())
 
 # Headers of the system and of third parties by part, for .cpp files and internal/ headers; prefixes.
-POSIX = ["unistd.h", "fcntl.h", "dlfcn.h", "poll.h", "signal.h", "sys/"]
+POSIX = ["unistd.h", "fcntl.h", "dlfcn.h", "poll.h", "signal.h", "sys/", "arpa/", "netinet/"]
 FFMPEG = ["libavformat/", "libavcodec/", "libavutil/", "libswscale/"]
 THIRD_PARTY = {
     "calibrate": ["ceres/", "apriltag/"],
@@ -45,7 +45,7 @@ THIRD_PARTY = {
     "team": ["dds/", *POSIX],
     "sim": ["embree3/"],
     "web": ["boost/", *POSIX],
-    "app": ["CLI/", "fmt/", "spdlog/", *POSIX],
+    "app": ["CLI/", "fmt/", "spdlog/", "nlohmann/", "qrencode.h", *POSIX],
 }
 # Instructions of one kind of machine: only in the sources of kernels, which are named after it.
 INTRINSICS = ["immintrin.h", "arm_neon.h"]

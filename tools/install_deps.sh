@@ -12,7 +12,7 @@ usage: tools/install_deps.sh [--references] [--benchmarks]
   --references  also clang (for fuzzing), the OpenCV modules that some tests compare with, and Leptonica, with which a
                 benchmark does (about 80 MB more); without them those tests are skipped and listed.
                 And what builds for aarch64 and runs it here: cross compiler, qemu-user, GoogleTest's source
-                (about 70 MB)
+                (about 70 MB). And a browser without windows, with which the web UI is tested (about 65 MB)
   --benchmarks  also what bench/report compares with: OpenCV with the run lengths of its extra modules
                 (ximgproc::rl), and Leptonica (about 150 MB more); what is missing leaves its columns empty
 EOF
@@ -32,6 +32,7 @@ packages=(
   g++ cmake ninja-build ccache pkg-config make git
   libeigen3-dev
   libavformat-dev libavcodec-dev libswscale-dev libavutil-dev
+  libboost-dev libqrencode-dev
   libyaml-cpp-dev libpng-dev libjpeg-dev nlohmann-json3-dev libcli11-dev libfmt-dev libcairo2-dev libceres-dev
   libgtest-dev libgmock-dev libbenchmark-dev
   clang-format python3 python3-numpy python3-jsonschema ffmpeg
@@ -41,7 +42,15 @@ packages=(
 if [ "$references" = 1 ]; then packages+=(clang libopencv-imgproc-dev libopencv-calib3d-dev libleptonica-dev); fi
 if [ "$references" = 1 ]; then packages+=(g++-aarch64-linux-gnu qemu-user googletest); fi
 if [ "$benchmarks" = 1 ]; then packages+=(libopencv-imgproc-dev libopencv-contrib-dev libleptonica-dev); fi
-if [ -d webui ]; then packages+=(nodejs npm); fi
+# Whoever has them from elsewhere keeps them: Debian's packages conflict with those of nodejs.org.
+if [ -d webui ]; then
+  command -v node >/dev/null || packages+=(nodejs)
+  command -v npm >/dev/null || packages+=(npm)
+fi
+# The browser of the web UI's test; the smaller one where there is a choice.
+if [ -d webui ] && [ "$references" = 1 ] && ! command -v chromium-headless-shell >/dev/null && ! command -v chromium >/dev/null; then
+  if apt-cache show chromium-headless-shell >/dev/null 2>&1; then packages+=(chromium-headless-shell); else packages+=(chromium); fi
+fi
 
 is_installed() { dpkg-query --show --showformat='${db:Status-Status}\n' "$1" 2>/dev/null | grep -qx installed; }
 
@@ -77,15 +86,6 @@ install_with_apt() {
   exit 1
 }
 
-install_with_npm() {
-  # npm ci starts from nothing each time, so it runs only when the lock file changed since the last time.
-  local lock=webui/package-lock.json stamp=webui/node_modules/.tassilo-lock
-  [ -f "$lock" ] || return 0
-  if [ -f "$stamp" ] && cmp -s "$lock" "$stamp"; then return 0; fi
-  (cd webui && npm ci --no-audit --no-fund)
-  cp "$lock" "$stamp"
-}
-
 if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
   {
     echo "install: this machine has no apt-get; Tassilo is built and tested on Debian 12."
@@ -95,4 +95,4 @@ if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
   exit 1
 fi
 install_with_apt
-install_with_npm
+if [ -d webui ]; then tools/webui_packages.sh; fi

@@ -517,7 +517,8 @@ class Vision:
     """The whole vision of one robot: vision(frame) is a scene.
 
     From parts: the color table and, for everything in metres, camera and field; each the object or the path of its file
-    (field also the name of a shipped one). options: as below `vision:` in robot.yaml, see vision_options."""
+    (field also the name of a shipped one). options: as below `vision:` in robot.yaml, see vision_options, and
+    stages for those that are names."""
     def __init__(self, colors: object, camera: object = None, field: object = 'msl98', options: Dict[str, Any] = {}) -> None:
         """From parts."""
     @staticmethod
@@ -530,3 +531,6 @@ class Vision:
 
 def vision_options() -> List[Any]:
     """The options of Vision: key, default, low, high, whole, unit, meaning."""
+
+def stages() -> List[Any]:
+    """The stages of Vision in the order they run: key, meaning, options as in vision_options, and alternatives, the default first: name, meaning, options of their own. One is chosen by the option key=name."""

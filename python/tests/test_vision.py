@@ -23,10 +23,11 @@ def without_times(scene):
     return {**scene, "timing_ms": sorted(set(scene["timing_ms"]) - {"decode"})}
 
 
-def without_pose(scene):
+def without_history(scene):
+    """What the frame shows by itself: no pose and no tracks, which need the frames before."""
     lines = [{key: value for key, value in line.items() if key != "model"} for line in scene["lines"]]
     why = {subject: reason for subject, reason in scene["why"].items() if subject != "pose"}
-    return {**scene, "pose": None, "lines": lines, "why": why}
+    return {**scene, "pose": None, "tracks": [], "lines": lines, "why": why}
 
 
 def test_scenes_are_the_lines_of_the_program(vision, colors, tmp_path):
@@ -42,7 +43,7 @@ def test_scenes_are_the_lines_of_the_program(vision, colors, tmp_path):
         expected, *seen = [without_times(scene) for scene in (json.loads(line), vision(frame), robot(frame))]
         assert all(list(scene) == list(expected) for scene in seen)
         pose, *poses = [scene["pose"] for scene in (expected, *seen)]
-        assert [without_pose(scene) for scene in seen] == [without_pose(expected)] * 2
+        assert [without_history(scene) for scene in seen] == [without_history(expected)] * 2
         for other in poses:
             assert other is None or abs(other["x"] - pose["x"]) < .1 and abs(other["y"] - pose["y"]) < .1
 
@@ -74,6 +75,33 @@ def test_options_are_those_of_the_robot_file(colors, frame):
     for bad in ({"ball_maximum": 1}, {"ball_max": 0}, {"ball_max": 1.5}, {"ball_max": "1"}, {"line_slant": float("nan")}):
         with pytest.raises(ValueError, match="options: .*(must be|did you mean)"):
             Vision(colors, options=bad)
+
+
+def test_stages_are_chosen_by_name(colors, frame):
+    stages = {stage["key"]: stage for stage in tassilo.stages()}
+    assert [a["name"] for a in stages["field_boundary"]["alternatives"]] == ["subpixel", "skeleton"]
+    assert stages["surface"]["alternatives"] == [] and all(stage["meaning"] for stage in stages.values())
+    listed = [option["key"] for stage in stages.values() for option in stage["options"]]
+    assert sorted(listed) == sorted(option["key"] for option in tassilo.vision_options())
+    for stage in stages.values():
+        for alternative in stage["alternatives"]:
+            vision = Vision(colors, CLIP / "camera.yaml", options={stage["key"]: alternative["name"]})
+            assert vision(frame)["balls"]
+    for bad in ({"field_boundary": "skeletom"}, {"field_boundary": 1}, {"localization": None}):
+        with pytest.raises(ValueError, match="options: vision.*must be (subpixel or skeleton|model or boundary)"):
+            Vision(colors, options=bad)
+
+
+def test_a_robot_file_brings_alternatives(colors, frame, tmp_path):
+    colors.save(tmp_path / "colors.yaml")
+    robot = tmp_path / "robot.yaml"
+    robot.write_text(f"colors: colors.yaml\nplugins: [{os.environ['TASSILO_PLUGIN']}]\nvision: {{balls: blind}}\n")
+    for _ in range(2):  # read again, in one process
+        scene = Vision.from_robot(robot)(frame)
+        assert scene["balls"] == [] and scene["why"]["balls"] == "blind"
+    robot.write_text("colors: colors.yaml\nplugins: [none.so]\n")
+    with pytest.raises(tassilo.Error, match="robot.yaml: names .*none.so as a plug-in, which does not exist"):
+        Vision.from_robot(robot)
 
 
 def test_wrong_types_are_type_errors(colors):

@@ -15,12 +15,13 @@ constexpr int kPausesUntilRetry = 10;
 }  // namespace
 
 std::shared_ptr<const Configuration> load_configuration(const std::string& robot_file, const std::string& colors,
+                                                        const std::vector<std::string>& plugins,
                                                         const std::function<void(RobotSetup&)>& change) {
   using std::chrono::system_clock, std::chrono::nanoseconds;
   const auto now = std::chrono::duration_cast<nanoseconds>(system_clock::now().time_since_epoch());
-  RobotSetup setup = read_robot_setup(robot_file, colors);
+  RobotSetup setup = read_robot_setup(robot_file, colors, plugins);
   change(setup);
-  Vision vision(setup.vision);
+  Vision vision(setup.vision, setup.registry);
   return std::make_shared<const Configuration>(Configuration{now.count(), std::move(setup), std::move(vision)});
 }
 

@@ -23,6 +23,7 @@ struct Configuration {
 /// Reads all files and sets up the vision. `change` may set what the command line says. Throws Error naming the file
 /// that is wrong.
 std::shared_ptr<const Configuration> load_configuration(const std::string& robot_file, const std::string& colors,
+                                                        const std::vector<std::string>& plugins,
                                                         const std::function<void(RobotSetup&)>& change);
 
 /// Watches the files of a configuration while it is at work, and loads it anew in a thread of its own when one of them

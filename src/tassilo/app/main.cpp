@@ -50,6 +50,7 @@ int main(int argc, char** argv) {
   program.failure_message(usage_message);
 
   const Command run = add_run(program);
+  const Command serve = add_serve(program);
   auto* train = program.add_subcommand("train", "train what the vision needs");
   train->require_subcommand(1);
   const Command train_colors = add_train_colors(*train);
@@ -59,6 +60,7 @@ int main(int argc, char** argv) {
   const Command info = add_info(program);
   const auto command = [&] {
     if (program.got_subcommand("run")) return run();
+    if (program.got_subcommand("serve")) return serve();
     if (program.got_subcommand("train")) return train_colors();
     if (program.got_subcommand("calibrate")) return calibrate();
     if (program.got_subcommand("eval")) return eval();

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "tassilo/app/plugin.h"
 #include "tassilo/base/error.h"
 #include "tassilo/files/camera_file.h"
 #include "tassilo/files/colors_file.h"
@@ -36,7 +37,15 @@ PoseGaussian gaussian_of(const StartPose& start) {
   return pose_gaussian(start.x, start.y, start.theta, start.sigma_xy, start.sigma_theta);
 }
 
-RobotSetup read_robot_setup(const std::string& robot_file, const std::string& colors) {
+StageRegistry registry_of(const RobotFile& robot, const std::string& robot_file, std::span<const std::string> plugins) {
+  std::vector<std::string> files;
+  for (const fs::path& plugin : robot.plugins) files.push_back(named_file(robot_file, "a plug-in", plugin, ""));
+  files.insert(files.end(), plugins.begin(), plugins.end());
+  return with_plugins(built_in_stages(), files);
+}
+
+RobotSetup read_robot_setup(const std::string& robot_file, const std::string& colors,
+                            std::span<const std::string> plugins) {
   const RobotFile robot = robot_file.empty() ? RobotFile{} : read_robot(robot_file);
   RobotSetup setup;
   setup.read.push_back({"robot file", robot_file});
@@ -66,7 +75,11 @@ RobotSetup read_robot_setup(const std::string& robot_file, const std::string& co
   // Without a field file: whatever may be there, in the image alone.
   setup.vision.field = robot.field ? named_field(robot_file, *robot.field) : read_field("msl98");
   if (robot.field && is_field_path(*robot.field)) setup.read.push_back({"field file", *robot.field});
-  setup.vision.options = vision_options(robot.vision);
+  for (const fs::path& plugin : robot.plugins) setup.read.push_back({"plug-in", plugin.string()});
+  for (const std::string& plugin : plugins) setup.read.push_back({"--plugin", plugin});
+  setup.registry = registry_of(robot, robot_file, plugins);
+  setup.settings = robot.vision;
+  setup.vision.options = vision_options(setup.settings, setup.registry);
   if (robot.start_pose) setup.vision.start_pose = gaussian_of(*robot.start_pose);
   return setup;
 }

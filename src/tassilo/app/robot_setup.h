@@ -1,6 +1,8 @@
 #pragma once
 
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tassilo/app/written_files.h"
@@ -12,14 +14,22 @@ namespace tassilo {
 /// What a robot sees with, and the files that said so.
 struct RobotSetup {
   VisionSetup vision;
+  StageRegistry registry;                                 ///< What the vision chooses its stages from.
+  std::vector<std::pair<std::string, Setting>> settings;  ///< Below `vision:`, as written.
   std::vector<NamedFile> read;
 };
 
 /// A start pose as the vision takes it.
 PoseGaussian gaussian_of(const StartPose& start);
 
+/// The built-in alternatives, those of the robot's plug-ins and then those of `plugins`. Throws Error naming the
+/// library that is wrong, and `robot_file` where that names one that is not there.
+StageRegistry registry_of(const RobotFile& robot, const std::string& robot_file, std::span<const std::string> plugins);
+
 /// Reads a robot file (none when empty) and all that it names; `colors`, when given, takes the place of its color
-/// table. Throws Error naming the file that is wrong, and the robot file where it names something that is not there.
-RobotSetup read_robot_setup(const std::string& robot_file, const std::string& colors);
+/// table; `plugins` come after its own. Throws Error naming the file that is wrong, and the robot file where it names
+/// something that is not there.
+RobotSetup read_robot_setup(const std::string& robot_file, const std::string& colors,
+                            std::span<const std::string> plugins = {});
 
 }  // namespace tassilo

@@ -12,16 +12,20 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "tassilo/app/boundary_steps.h"
 #include "tassilo/app/commands.h"
 #include "tassilo/app/configuration_watch.h"
+#include "tassilo/app/live_view.h"
+#include "tassilo/app/odometry_input.h"
 #include "tassilo/app/robot_setup.h"
+#include "tassilo/app/run.h"
 #include "tassilo/app/run_summary.h"
+#include "tassilo/app/source_arguments.h"
 #include "tassilo/app/written_files.h"
 #include "tassilo/base/error.h"
-#include "tassilo/files/odometry_file.h"
 #include "tassilo/files/scene_json.h"
 #include "tassilo/overlay/overlay.h"
 #include "tassilo/record/image_folder.h"
@@ -32,18 +36,6 @@
 
 namespace tassilo {
 namespace {
-
-struct RunArguments {
-  std::string robot, source, odometry, output, overlay, overlay_step, label_maps, colors, start_pose;
-  std::string format, size, range;
-  std::optional<RawFormat> raw;    ///< What `format`, `size`, `range` and `fps` say.
-  std::optional<StartPose> start;  ///< What `start_pose` says.
-  double fps = 0;
-  int every = 1;
-  int threads = 1;
-  bool watch = false;
-  bool quiet = false;
-};
 
 std::atomic<bool> interrupted = false;
 
@@ -56,40 +48,6 @@ void end_cleanly_on_signals() {
   action.sa_flags = static_cast<int>(SA_RESETHAND);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
-}
-
-/// Throws CLI::ValidationError: what it refuses is wrong usage.
-std::optional<RawFormat> raw_format(const RunArguments& arguments) {
-  if (arguments.format.empty()) {
-    if (!arguments.size.empty() || !arguments.range.empty())
-      throw CLI::ValidationError("--size and --range", "belong to raw frames, --format is missing");
-    return std::nullopt;
-  }
-  if (arguments.size.empty() || arguments.range.empty() || arguments.fps <= 0)
-    throw CLI::ValidationError(
-        "--format", "raw frames do not say what they are: give --size WxH, --range full|limited and --fps N, too");
-  RawFormat raw;
-  for (const PixelFormat format :
-       {PixelFormat::yuyv422, PixelFormat::uyvy422, PixelFormat::yuv422p, PixelFormat::yuv420p, PixelFormat::nv12})
-    if (arguments.format == to_string(format)) raw.format = format;
-  const auto cross = arguments.size.find('x');
-  try {
-    std::size_t used_width = 0, used_height = 0;
-    const std::string height = cross == std::string::npos ? "" : arguments.size.substr(cross + 1);
-    raw.width = std::stoi(arguments.size, &used_width);
-    raw.height = std::stoi(height, &used_height);
-    if (used_width != cross || used_height != height.size()) throw std::invalid_argument("size");
-  } catch (const std::logic_error&) {
-    throw CLI::ValidationError("--size", "is " + arguments.size + ", must be like 640x480");
-  }
-  raw.range = arguments.range == "full" ? ColorRange::full : ColorRange::limited;
-  raw.fps = arguments.fps;
-  try {
-    raw.check();
-  } catch (const Error& error) {
-    throw CLI::ValidationError("--size", error.what());
-  }
-  return raw;
 }
 
 /// Throws CLI::ValidationError: what it refuses is wrong usage.
@@ -116,8 +74,8 @@ std::optional<StartPose> start_pose_from(const std::string& text) {
 
 /// Throws Error when a file that is read would be overwritten.
 void check_paths(const RunArguments& arguments, std::vector<NamedFile> read) {
-  const std::filesystem::path source = arguments.source;
-  read.push_back({"--source", arguments.source});
+  const std::filesystem::path source = arguments.source.source;
+  read.push_back({"--source", arguments.source.source});
   read.push_back({"--odometry", arguments.odometry});
   // Pictures are written as NNNN.png: among other pictures one may have this name.
   const std::string extension = source.extension().string();
@@ -129,13 +87,13 @@ void check_paths(const RunArguments& arguments, std::vector<NamedFile> read) {
 }
 
 /// Bytes without a header open as no video; says what they may be.
-FrameSource open_source_of(const RunArguments& arguments, const SourceOptions& options) {
+FrameSource open_source_of(const SourceOptions& options) {
   try {
     return open_source(options);
   } catch (const Error& error) {
-    const std::string extension = std::filesystem::path(arguments.source).extension().string();
+    const std::string extension = std::filesystem::path(options.location).extension().string();
     const bool may_be_raw =
-        arguments.source == "-" || extension == ".yuv" || extension == ".raw" || extension == ".nv12";
+        options.location == "-" || extension == ".yuv" || extension == ".raw" || extension == ".nv12";
     if (options.raw || !may_be_raw || interrupted) throw;
     throw Error(error.what(), "raw frames need --format, --size, --range and --fps");
   }
@@ -243,168 +201,264 @@ double ms_between(std::chrono::steady_clock::time_point from, std::chrono::stead
   return std::chrono::duration<double, std::milli>(to - from).count();
 }
 
-/// All of the file, in the order of time; nothing where none is given.
-std::optional<Odometry> load_odometry(const std::string& file) {
-  if (file.empty()) return std::nullopt;
-  const std::vector<OdometrySample> samples = read_odometry(file);
-  Odometry odometry(std::max<std::size_t>(2, samples.size()));
-  for (const OdometrySample& sample : samples) odometry.add(sample);
-  return odometry;
-}
-
-int run_command(const RunArguments& arguments) {
-  using Clock = std::chrono::steady_clock;
-  const auto load = [&] {
-    return load_configuration(arguments.robot, arguments.colors, [&](RobotSetup& setup) {
-      if (arguments.start) setup.vision.start_pose = gaussian_of(*arguments.start);
-    });
-  };
-  std::shared_ptr<const Configuration> configuration = load();
-  check_paths(arguments, configuration->setup.read);
-  const std::optional<Odometry> odometry = load_odometry(arguments.odometry);
-  // Nothing but scene lines may go where scene lines go.
-  std::FILE* report = arguments.output == "-" ? stderr : stdout;
-  const auto tell = [&](const std::string& text) {
-    if (!arguments.quiet) fmt::print(report, "{}", text);
-  };
-
-  SourceOptions source_options;
-  source_options.location = arguments.source;
-  source_options.raw = arguments.raw;
-  source_options.images_range = configuration->setup.vision.colors.range;
-  source_options.fps = arguments.fps;
-  source_options.threads = arguments.threads;
-  source_options.interrupted = [] { return interrupted.load(); };
-  end_cleanly_on_signals();
-  std::optional<FrameSource> opened;
-  try {
-    opened = open_source_of(arguments, source_options);
-  } catch (const Error&) {
-    if (!interrupted) throw;
-    tell("ended by a signal before the first frame\n");
-    return 0;
+/// One run, from the configuration to the summary.
+class Run {
+ public:
+  Run(const RunArguments& arguments, LiveView* live)
+      : arguments_(arguments),
+        live_(live),
+        // Nothing but scene lines may go where scene lines go.
+        report_(arguments.output == "-" ? stderr : stdout),
+        configuration_(load(live != nullptr ? live->changes() : VisionChanges{})),
+        odometry_(arguments.odometry, loses_nothing()) {
+    check_paths(arguments_, configuration_->setup.read);
+    workspace_.watch_boundary = !arguments_.overlay_step.empty();
   }
-  FrameSource& source = *opened;
-  const std::string name = source.info().name;
-  const auto check_source = [&](const Vision& vision) {
-    vision.check_frames(name, source.info().width, source.info().height, source.info().range);
-  };
-  check_source(configuration->vision);
-  tell(fmt::format("{}: {}\n", name, source.info().description));
 
-  Sinks sinks(arguments);
-  VisionWorkspace workspace;
-  workspace.watch_boundary = !arguments.overlay_step.empty();
-  RunSummary summary;
-  if (odometry) summary.set_odometry(odometry->counts());
-  Progress progress(!arguments.quiet, source.info().frame_count);
-  std::optional<Error> damage;
-  std::int64_t read = 0, done = 0;
-  std::optional<ConfigurationWatch> watch;
-  if (arguments.watch)
-    watch.emplace(*configuration, [&] {
-      auto loaded = load();
-      check_source(loaded->vision);
-      check_paths(arguments, loaded->setup.read);
-      return loaded;
+  void operator()() {
+    end_cleanly_on_signals();
+    try {
+      open();
+    } catch (const Error&) {
+      if (!interrupted) throw;
+      tell("ended by a signal before the first frame\n");
+      return;
+    }
+    tell(fmt::format("{}: {}\n", name(), info_.description));
+    if (is_live()) std::fflush(report_);  // somebody watches
+    Sinks sinks(arguments_);
+    progress_.emplace(!arguments_.quiet && live_ == nullptr, info_.frame_count);
+    if (arguments_.watch)
+      watch_.emplace(*configuration_,
+                     [this] { return checked(load(live_ != nullptr ? live_->changes() : VisionChanges{})); });
+    if (live_ != nullptr)
+      live_->begin(name(), info_.description, configuration_,
+                   [this](const VisionChanges& changes) { return checked(load(changes)); });
+
+    std::optional<Error> damage;
+    const auto begin = Clock::now();
+    try {
+      see_all(sinks);
+      while (plays_again()) {
+        open();
+        see_all(sinks);
+      }
+      sinks.finish();
+    } catch (const Error& error) {
+      damage = error;
+    }
+    const double seconds = ms_between(begin, Clock::now()) / 1000;
+    if (live_ != nullptr) live_->leave();
+    progress_->finish();
+    if (odometry_.get() != nullptr) summary_.set_odometry(odometry_.get()->counts());
+    tell(summary_.text(seconds, camera_summary(source_->camera_counts()) + odometry_.summary()));
+    if (interrupted) tell("\nended by a signal; all lines are complete\n");
+    tell(sinks.names());
+    if (damage) throw *damage;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  /// For people who look at it, a file has no end; unless somebody keeps what is seen of it.
+  bool plays_again() const {
+    std::error_code ignored;
+    const std::filesystem::path path = arguments_.source.source;
+    return live_ != nullptr && done_ > 0 && !interrupted && arguments_.output.empty() && arguments_.overlay.empty() &&
+           arguments_.label_maps.empty() &&
+           (std::filesystem::is_regular_file(path, ignored) || std::filesystem::is_directory(path, ignored));
+  }
+  bool is_live() const { return arguments_.source.camera.has_value(); }
+  /// Do frames wait until somebody wants them?
+  bool loses_nothing() const { return !is_live() && arguments_.source.source.find("://") == std::string::npos; }
+  const std::string& name() const { return info_.name; }
+  void tell(const std::string& text) const {
+    if (!arguments_.quiet) fmt::print(report_, "{}", text);
+  }
+  /// Something happened during the run; somebody may wait for it.
+  void tell_now(const std::string& text) const {
+    if (progress_) progress_->clear();
+    tell(text);
+    std::fflush(report_);
+  }
+
+  std::shared_ptr<const Configuration> load(const VisionChanges& changes) const {
+    return load_configuration(arguments_.robot, arguments_.colors, arguments_.plugins, [&](RobotSetup& setup) {
+      if (arguments_.start) setup.vision.start_pose = gaussian_of(*arguments_.start);
+      if (!changes.empty()) apply_changes(setup, changes);
     });
-  const auto begin = Clock::now();
-  try {
+  }
+  void check_source(const Vision& vision) const {
+    vision.check_frames(info_.name, info_.width, info_.height, info_.range);
+  }
+  /// A configuration loaded while running must fit what is being seen.
+  std::shared_ptr<const Configuration> checked(std::shared_ptr<const Configuration> loaded) const {
+    check_source(loaded->vision);
+    check_paths(arguments_, loaded->setup.read);
+    return loaded;
+  }
+
+  void open() {
+    SourceOptions options;
+    options.location = arguments_.source.source;
+    options.raw = arguments_.source.raw;
+    options.images_range = configuration_->setup.vision.colors.range;
+    options.fps = arguments_.source.fps;
+    options.threads = arguments_.threads;
+    options.interrupted = [] { return interrupted.load(); };
+    if (is_live()) options.camera = *arguments_.source.camera;
+    // Frames that fit the camera file need no --size.
+    if (const auto& camera = configuration_->setup.vision.camera; camera && arguments_.source.size.empty()) {
+      options.camera.width = camera->width;
+      options.camera.height = camera->height;
+    }
+    options.camera_news = [this](const CameraNews& news) {
+      tell_now(fmt::format("{}: {}\n", to_string(news.state), news.text));
+    };
+    const bool is_first = !source_;
+    source_.emplace(open_source_of(options));
+    if (is_first) info_ = source_->info();  // a file that is played again is the same
+    check_source(configuration_->vision);
+  }
+
+  void see_all(Sinks& sinks) {
+    std::optional<double> first_t;
+    auto started = Clock::now();
     while (!interrupted) {
       const auto before = Clock::now();
-      const std::optional<Frame> frame = source.next();
-      if (!frame) break;
-      if (read++ % arguments.every != 0) continue;
+      const std::optional<Frame> frame = source_->next();
+      if (!frame) return;
+      if (read_++ % arguments_.every != 0) continue;
       const double decode_ms = ms_between(before, Clock::now());
-      RecycledString changes;
-      if (auto news = watch ? watch->news() : std::nullopt) {
-        progress.clear();
-        if (news->configuration) {
-          configuration = std::move(news->configuration);
-          changes = "a changed one was taken over";
-          tell(fmt::format("frame {}: the changed configuration is taken over\n", frame->index));
+      if (live_ != nullptr && !is_live()) {
+        if (!first_t) {
+          first_t = frame->t;
+          started = Clock::now();
         }
-        if (!news->refusal.empty()) {
-          changes.append(changes.empty() ? "" : "; ").append("refused, the former one goes on: ").append(news->refusal);
-          tell(fmt::format("frame {}: a changed configuration is refused, the former one goes on: {}\n", frame->index,
-                           news->refusal));
-        }
-        std::fflush(report);  // somebody waits for it
+        wait_until(started +
+                   std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(frame->t - *first_t)));
       }
-      const Vision& vision = configuration->vision;
-      vision.check_frames(name_of(*frame, name), frame->view.width(), frame->view.height(), frame->range);
-      Scene scene = vision(*frame, workspace, odometry ? &*odometry : nullptr);
-      scene.timing.insert(scene.timing.begin(), {"decode", decode_ms});
-      if (!changes.empty()) scene.why.emplace_back("configuration", std::move(changes));
-      if (odometry) {
-        const bool known = odometry->at(frame->t).has_value();
-        summary.add_odometry(known);
-        if (!known) scene.why.emplace_back("odometry", "missing at this time");
-      }
-      sinks.write(*frame, scene, workspace, vision.optics());
-      summary.add(scene);
-      progress.frame(++done);
+      see(*frame, decode_ms, sinks);
     }
-    sinks.finish();
-  } catch (const Error& error) {
-    damage = error;
   }
-  const double seconds = ms_between(begin, Clock::now()) / 1000;
-  progress.finish();
-  tell(summary.text(seconds));
-  if (interrupted) tell("\nended by a signal; all lines are complete\n");
-  tell(sinks.names());
-  if (damage) throw *damage;
-  return 0;
-}
+
+  static void wait_until(Clock::time_point then) {
+    constexpr auto patience = std::chrono::milliseconds(50);  // until a signal is noticed
+    while (!interrupted && Clock::now() < then)
+      std::this_thread::sleep_for(std::min<Clock::duration>(patience, then - Clock::now()));
+  }
+
+  void see(const Frame& frame, double decode_ms, Sinks& sinks) {
+    RecycledString changes = taken_over(frame.index);
+    const Vision& vision = configuration_->vision;
+    vision.check_frames(name_of(frame, name()), frame.view.width(), frame.view.height(), frame.range);
+    odometry_.update(frame.t, [] { return interrupted.load(); });
+    const Odometry* const odometry = odometry_.get();
+    Scene scene = vision(frame, workspace_, odometry);
+    scene.timing.insert(scene.timing.begin(), {is_live() ? "wait" : "decode", decode_ms});
+    if (!changes.empty()) scene.why.emplace_back("configuration", std::move(changes));
+    if (odometry != nullptr) {
+      const bool known = odometry->at(frame.t).has_value();
+      summary_.add_odometry(known);
+      if (!known) scene.why.emplace_back("odometry", "missing at this time");
+    }
+    sinks.write(frame, scene, workspace_, vision.optics());
+    if (live_ != nullptr) live_->show(frame, scene, workspace_, configuration_);
+    summary_.add(scene);
+    progress_->frame(++done_);
+  }
+
+  /// Between two frames: what was chosen or written meanwhile. Says in words what happened, nothing when nothing did.
+  RecycledString taken_over(std::int64_t frame) {
+    RecycledString changes;
+    if (auto chosen = live_ != nullptr ? live_->chosen() : nullptr) {
+      configuration_ = std::move(chosen);
+      changes = "a changed one was taken over";
+      tell_now(fmt::format("frame {}: stages as chosen in the browser\n", frame));
+    }
+    auto news = watch_ ? watch_->news() : std::nullopt;
+    if (!news) return changes;
+    if (live_ != nullptr) live_->told(*news);
+    if (news->configuration) {
+      configuration_ = std::move(news->configuration);
+      changes = "a changed one was taken over";
+      tell_now(fmt::format("frame {}: the changed configuration is taken over\n", frame));
+    }
+    if (!news->refusal.empty()) {
+      changes.append(changes.empty() ? "" : "; ").append("refused, the former one goes on: ").append(news->refusal);
+      tell_now(fmt::format("frame {}: a changed configuration is refused, the former one goes on: {}\n", frame,
+                           news->refusal));
+    }
+    return changes;
+  }
+
+  const RunArguments& arguments_;
+  LiveView* live_;
+  std::FILE* report_;
+  std::shared_ptr<const Configuration> configuration_;
+  OdometryInput odometry_;
+  std::optional<FrameSource> source_;
+  SourceInfo info_;  ///< Stays as it is once other threads may look at it.
+  VisionWorkspace workspace_;
+  RunSummary summary_;
+  std::optional<Progress> progress_;
+  std::int64_t read_ = 0, done_ = 0;
+  std::optional<ConfigurationWatch> watch_;  ///< Last: its thread uses the above.
+};
 
 }  // namespace
 
-Command add_run(CLI::App& program) {
-  auto* command =
-      program.add_subcommand("run", "see: balls, goals, robots, lines and free space in every frame of a source");
-  auto arguments = std::make_shared<RunArguments>();
-  command->add_option("-r,--robot", arguments->robot, "robot.yaml: camera, colors, field and options of one robot");
+void add_run_options(CLI::App& command, RunArguments& arguments) {
+  command.add_option("-r,--robot", arguments.robot, "robot.yaml: camera, colors, field and options of one robot");
+  arguments.source.add_to(command);
+  command.add_option("--odometry", arguments.odometry,
+                     "odometry.jsonl on the clock of the frames; live: - for standard input, or udp:127.0.0.1:PORT");
+  command.add_option("--start-pose", arguments.start_pose,
+                     "X,Y,THETA[,SIGMA_XY,SIGMA_THETA] on the field, instead of the robot file's [m, rad]");
+  command.add_option("-o,--output", arguments.output, "scenes as JSON Lines; - for standard output");
+  command.add_option("--overlay", arguments.overlay, "annotated pictures: a .mkv or .mp4 video, or a folder of PNGs");
   command
-      ->add_option("-s,--source", arguments->source,
-                   "video or image file, folder of images, URL, or - for standard input")
-      ->required();
-  command->add_option("--odometry", arguments->odometry, "odometry.jsonl on the clock of the frames");
-  command->add_option("--start-pose", arguments->start_pose,
-                      "X,Y,THETA[,SIGMA_XY,SIGMA_THETA] on the field, instead of the robot file's [m, rad]");
-  command->add_option("-o,--output", arguments->output, "scenes as JSON Lines; - for standard output");
-  command->add_option("--overlay", arguments->overlay, "annotated pictures: a .mkv or .mp4 video, or a folder of PNGs");
-  command
-      ->add_option("--overlay-step", arguments->overlay_step,
-                   "draw what this step of finding the boundary saw, instead of what is in the scene")
+      .add_option("--overlay-step", arguments.overlay_step,
+                  "draw what this step of finding the boundary saw, instead of what is in the scene")
       ->check(CLI::IsMember(std::vector<std::string>(kBoundarySteps.begin(), kBoundarySteps.end())));
-  command->add_option("--label-maps", arguments->label_maps, "folder for color classes 0..8 as NNNN.png");
-  command->add_option("--colors", arguments->colors, "color table, instead of the robot file's");
-  command->add_option("--format", arguments->format, "raw frames: pixel format")
-      ->check(CLI::IsMember({"yuv420p", "yuv422p", "yuyv422", "uyvy422", "nv12"}));
-  command->add_option("--size", arguments->size, "raw frames: WIDTHxHEIGHT");
-  command->add_option("--range", arguments->range, "raw frames: color range")
-      ->check(CLI::IsMember({"limited", "full"}));
-  command->add_option("--fps", arguments->fps, "raw frames, folders: frames per second")
-      ->check(CLI::Range(0.001, 10000.0));
-  command->add_option("--threads", arguments->threads, "for decoding and encoding; seeing itself takes one core")
+  command.add_option("--label-maps", arguments.label_maps, "folder for color classes 0..8 as NNNN.png");
+  command.add_option("--colors", arguments.colors, "color table, instead of the robot file's");
+  add_plugin_option(command, arguments.plugins);
+  command.add_option("--threads", arguments.threads, "for decoding and encoding; seeing itself takes one core")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
-  command->add_option("--every", arguments->every, "look at every N-th frame only, as if the others had been lost")
+  command.add_option("--every", arguments.every, "look at every N-th frame only, as if the others had been lost")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
+  command.add_flag("-q,--quiet", arguments.quiet, "print nothing but errors");
+}
+
+void understand(RunArguments& arguments) {
+  if (!arguments.overlay_step.empty() && arguments.overlay.empty())
+    throw CLI::ValidationError("--overlay-step", "says what is drawn, --overlay is missing");
+  if (arguments.watch && arguments.robot.empty())
+    throw CLI::ValidationError("--watch", "watches the robot file, --robot is missing");
+  if (arguments.odometry == "-" && arguments.source.source == "-")
+    throw CLI::ValidationError("--odometry", "and --source cannot both be standard input");
+  arguments.source.understand();
+  arguments.start = start_pose_from(arguments.start_pose);
+}
+
+int run(const RunArguments& arguments, LiveView* live) {
+  Run one(arguments, live);
+  one();
+  return 0;
+}
+
+Command add_run(CLI::App& program) {
+  auto* command =
+      program.add_subcommand("run", "see: balls, goals, robots, lines, free space and pose in every frame of a source");
+  auto arguments = std::make_shared<RunArguments>();
+  add_run_options(*command, *arguments);
   command->add_flag("--watch", arguments->watch,
                     "take changes of the robot file, and of the files it names, over between two frames");
-  command->add_flag("-q,--quiet", arguments->quiet, "print nothing but errors");
-  command->callback([arguments] {
-    if (!arguments->overlay_step.empty() && arguments->overlay.empty())
-      throw CLI::ValidationError("--overlay-step", "says what is drawn, --overlay is missing");
-    if (arguments->watch && arguments->robot.empty())
-      throw CLI::ValidationError("--watch", "watches the robot file, --robot is missing");
-    arguments->raw = raw_format(*arguments);
-    arguments->start = start_pose_from(arguments->start_pose);
-  });
-  return [arguments] { return run_command(*arguments); };
+  command->callback([arguments] { understand(*arguments); });
+  return [arguments] { return run(*arguments, nullptr); };
 }
 
 }  // namespace tassilo

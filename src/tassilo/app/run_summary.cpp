@@ -75,12 +75,12 @@ std::string RunSummary::odometry_text() const {
   return out + "\n";
 }
 
-std::string RunSummary::text(double seconds) const {
+std::string RunSummary::text(double seconds, const std::string& source) const {
   std::string out = fmt::format("\n{} frames in {:.2f} s", frames_, seconds);
   if (frames_ > 0 && seconds > 0) out += fmt::format(", {:.1f} frames/s", static_cast<double>(frames_) / seconds);
   const std::int64_t dropped = frames_ > 0 ? last_index_ - first_index_ + 1 - frames_ : 0;
   out += fmt::format(", {} dropped\n", dropped);
-  out += odometry_text();
+  out += source + odometry_text();
   if (frames_ == 0) return out;
   out += fmt::format("\n{:16}{:>10}{:>10}\n", "seen", "frames", "objects");
   for (const auto& [kind, count] : seen_) out += fmt::format("{:16}{:>10}{:>10}\n", kind, count.frames, count.objects);

@@ -19,8 +19,8 @@ class RunSummary {
   /// Did it say where the robot was at this frame's time?
   void add_odometry(bool known) { ++(known ? odometry_known_ : odometry_missing_); }
 
-  /// A table for people, several lines, each ended.
-  std::string text(double seconds) const;
+  /// A table for people, several lines, each ended. `source` are such lines of the source.
+  std::string text(double seconds, const std::string& source) const;
 
  private:
   std::int64_t frames_ = 0;

@@ -244,7 +244,7 @@ std::optional<LineMark> mark_at(const View& view, FloorPoint at, FloorPoint acro
     const auto ray = view.optics->ray(pixel);
     return ray ? camera.floor_along(*ray, 0, longest_distance(view.field)) : std::nullopt;
   };
-  LineMark mark{at, across, kEdgeSigma * meters_per_px, 0, kind, line};
+  LineMark mark{at, across, kEdgeSigma * meters_per_px, 0, kind, line, camera.center()};
   if (kind == LineKind::boundary) {
     const auto edge = find_edge(view.frame, {.at = *here, .outward = outward});
     const auto floor = edge ? on_floor_at(*edge) : std::nullopt;

@@ -26,7 +26,7 @@ using ::testing::Not;
 namespace fs = std::filesystem;
 
 using Scenes = std::vector<Scene>;
-constexpr std::array kSubjects{"t", "pose", "balls", "goals", "robots", "lines", "free_space", "why"};
+constexpr std::array kSubjects{"t", "pose", "balls", "goals", "robots", "lines", "free_space", "tracks", "why"};
 
 Gaussian2<RobotFrame> near(double x, double y) { return {{x, y}, .01 * Eigen::Matrix2d::Identity()}; }
 

@@ -6,14 +6,16 @@
 
 namespace tassilo {
 
+OdometrySample read_odometry_line(std::string_view line, std::string_view place) {
+  const Map map = parse_json(line, place).map({"t", "x", "y", "theta"});
+  return {map.at("t").number(), map.at("x").number(), map.at("y").number(), map.at("theta").number()};
+}
+
 std::vector<OdometrySample> read_odometry(const std::filesystem::path& file) {
   constexpr std::size_t kMaxLine = 4096;
   std::vector<OdometrySample> samples;
   LineReader lines(file, kMaxLine);
-  while (const auto line = lines.next()) {
-    const Map map = parse_json(*line, lines.place()).map({"t", "x", "y", "theta"});
-    samples.push_back({map.at("t").number(), map.at("x").number(), map.at("y").number(), map.at("theta").number()});
-  }
+  while (const auto line = lines.next()) samples.push_back(read_odometry_line(*line, lines.place()));
   return samples;
 }
 

@@ -30,7 +30,7 @@ void read_identity(const Value& value, RobotFile& robot) {
 }
 
 RobotFile robot_of(const Value& root, const fs::path& folder) {
-  const Map map = root.map({"robot", "camera", "colors", "field", "start_pose", "vision"});
+  const Map map = root.map({"robot", "camera", "colors", "field", "start_pose", "plugins", "vision"});
   RobotFile robot;
   if (const auto value = map.find("robot")) read_identity(*value, robot);
   if (const auto value = map.find("camera")) robot.camera = value->path(folder);
@@ -38,6 +38,8 @@ RobotFile robot_of(const Value& root, const fs::path& folder) {
   if (const auto value = map.find("field"))
     robot.field = is_field_path(value->string()) ? value->path(folder).string() : value->string();
   if (const auto value = map.find("start_pose")) robot.start_pose = start_pose_of(*value);
+  if (const auto value = map.find("plugins"); value && !value->is_null())
+    for (const Value& plugin : value->list()) robot.plugins.push_back(plugin.path(folder));
   if (const auto value = map.find("vision"); value && !value->is_null())  // all commented out is as good as missing
     for (const auto& [key, entry] : value->any_map().entries()) robot.vision.emplace_back(key, entry.setting());
   return robot;

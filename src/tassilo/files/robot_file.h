@@ -26,6 +26,7 @@ struct RobotFile {
   std::optional<std::filesystem::path> colors;
   std::optional<std::string> field;  ///< A shipped name or a resolved path, as read_field takes it.
   std::optional<StartPose> start_pose;
+  std::vector<std::filesystem::path> plugins;  ///< Shared libraries that bring alternatives for stages.
   /// The keys below `vision:` in their order, for whoever knows what they mean.
   std::vector<std::pair<std::string, Setting>> vision;
 };

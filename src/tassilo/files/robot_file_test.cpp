@@ -54,13 +54,20 @@ TEST(RobotFile, FieldIsANameOrAPath) {
   EXPECT_EQ(robot_from_yaml("field: /abs/my.yaml", "a/robot.yaml").field, "/abs/my.yaml");
 }
 
+TEST(RobotFile, PluginsAreFilesBesideIt) {
+  const RobotFile robot = robot_from_yaml("plugins: [blob.so, /abs/b.so]", "a/robot.yaml");
+  EXPECT_EQ(robot.plugins, (std::vector<fs::path>{"a/blob.so", "/abs/b.so"}));
+  EXPECT_TRUE(robot_from_yaml("plugins:\n", "a/robot.yaml").plugins.empty());
+}
+
 TEST(RobotFile, MalformedFilesAreRefused) {
   struct Case {
     std::string from, to, message;
   };
   const Case cases[] = {
       {"colors:", "colours:",
-       "r:3:1: unknown key 'colours', must be robot, camera, colors, field, start_pose or vision; did you mean "
+       "r:3:1: unknown key 'colours', must be robot, camera, colors, field, start_pose, plugins or vision; did you "
+       "mean "
        "colors?"},
       {"id: 3", "id: 256", "r:1:13: robot.id is '256', must be >= 0 and <= 255"},
       {"id: 3", "id: -1", "r:1:13: robot.id is '-1', must be >= 0 and <= 255"},
@@ -72,6 +79,8 @@ TEST(RobotFile, MalformedFilesAreRefused) {
       {"theta: -3.1", "theta: 90",
        "r:5:35: start_pose.theta is '90', must be >= -6.283185307179586 and <= 6.283185307179586"},
       {"sigma_xy: .2", "sigma_xy: 0", "r:5:51: start_pose.sigma_xy is '0', must be > 0"},
+      {"field: msl98", "plugins: blob.so", "r:4:10: plugins is 'blob.so', must be a list"},
+      {"field: msl98", "plugins: [a.so, [b.so]]", "r:4:17: plugins[1] is a list, must be a text"},
       {"skeleton", "[skeleton]", "r:7:19: vision.field_boundary is a list, must be one value"},
       {"ball_min_px", "field_boundary", "r:8:3: key 'field_boundary' appears twice, first at r:7:3"},
   };

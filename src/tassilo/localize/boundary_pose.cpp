@@ -144,33 +144,22 @@ PoseGaussian hardly_known(const PoseGaussian& pose) {
   return unknown;
 }
 
-}  // namespace
+/// A line and the wall it is taken for, by their indices.
+struct Pair {
+  std::size_t line, wall;
+};
 
-BoundaryFix pose_by_boundary(const FieldTarget& target, const BoundaryObservation& seen,
-                             const std::optional<PoseGaussian>& predicted) {
-  const auto& [segments, goals, camera] = seen;
-  BoundaryFix fix;
-  fix.pose = predicted;
-  RecycledVector<FloorLine> lines;
-  for (const BoundarySegment& segment : segments) lines.push_back(floor_line(segment, camera));
-  const std::array<Wall, 4> walls = walls_of(target.extent);
-  if (lines.empty()) {
-    fix.why = "no line of the boundary";
-    return fix;
-  }
-
-  struct Pair {
-    std::size_t line, wall;
-  };
+/// A goal's end line, and a side line; empty when no line is adjacent to a goal.
+RecycledVector<Pair> pairs_by_goal(const FieldTarget& target, const BoundaryObservation& seen,
+                                   const RecycledVector<FloorLine>& lines) {
   RecycledVector<Pair> pairs;
-  // By a goal: its end line, then a side line.
-  for (const GoalInImage& goal : goals) {
+  for (const GoalInImage& goal : seen.goals) {
     const FieldModel::Goal* model = goal_of(target, goal.color);
     if (model == nullptr || goal.region.empty()) continue;
-    const Region near = dilation(goal.region, disc(goal_reach(goal.region, camera)));
+    const Region near = dilation(goal.region, disc(goal_reach(goal.region, seen.camera)));
     std::optional<std::size_t> end;
     for (std::size_t k = 0; k < lines.size(); ++k)
-      if (touches(segments[k], near, camera) && (!end || lines[k].length > lines[*end].length)) end = k;
+      if (touches(seen.segments[k], near, seen.camera) && (!end || lines[k].length > lines[*end].length)) end = k;
     if (!end) continue;
     const bool plus = model->side == GoalSide::plus_x;
     pairs.push_back({*end, plus ? 0u : 2u});
@@ -180,73 +169,100 @@ BoundaryFix pose_by_boundary(const FieldTarget& target, const BoundaryObservatio
       // Looking at the +x goal, +y is to the left.
       pairs.push_back({*side, left == plus ? 1u : 3u});
     }
-    break;
+    return pairs;
   }
-  // By the predicted orientation.
-  if (pairs.empty()) {
-    if (!predicted) {
-      fix.why = "lines, but neither a goal nor an orientation to tell them apart";
-      return fix;
-    }
-    const auto nearest_wall = [&](std::size_t k) {
-      const auto nearest = std::ranges::min_element(walls, {}, [&](const Wall& wall) {
-        return std::abs(wrap_angle(wall.normal - lines[k].normal - predicted->theta));
-      });
-      return static_cast<std::size_t>(nearest - walls.begin());
-    };
-    std::size_t longest = 0;
-    for (std::size_t k = 1; k < lines.size(); ++k)
-      if (lines[k].length > lines[longest].length) longest = k;
-    pairs.push_back({longest, nearest_wall(longest)});
-    if (const auto other = across(lines, longest)) pairs.push_back({*other, nearest_wall(*other)});
-  }
-  // Parallel walls cannot both be meant, and a line of the other handedness is none of the field's.
-  if (pairs.size() == 2) {
-    const double turn_seen = wrap_angle(lines[pairs[1].line].normal - lines[pairs[0].line].normal);
-    const double meant = wrap_angle(walls[pairs[1].wall].normal - walls[pairs[0].wall].normal);
-    if (std::abs(wrap_angle(turn_seen - meant)) > kPi / 4) {
-      pairs.pop_back();
-      fix.why = "the second line turns the wrong way";
-    }
-  }
-  if (pairs.size() == 2) {
-    const double off = off_orthogonal(lines[pairs[0].line].normal, lines[pairs[1].line].normal);
-    // The one whose direction is known less turns more.
-    FloorLine &a = lines[pairs[0].line], &b = lines[pairs[1].line];
-    const double of_a = a.sigma_normal * a.sigma_normal, of_b = b.sigma_normal * b.sigma_normal;
-    a.normal += off * of_a / (of_a + of_b);
-    b.normal -= off * of_b / (of_a + of_b);
-  }
+  return pairs;
+}
 
-  if (!predicted && pairs.size() < 2) {
-    fix.why.append("one line does not tell where along it");
+/// The longest line and the longest across it, as the walls that turn the predicted orientation least.
+RecycledVector<Pair> pairs_by_orientation(const std::array<Wall, 4>& walls, const RecycledVector<FloorLine>& lines,
+                                          double theta) {
+  const auto nearest_wall = [&](std::size_t k) {
+    const auto nearest = std::ranges::min_element(
+        walls, {}, [&](const Wall& wall) { return std::abs(wrap_angle(wall.normal - lines[k].normal - theta)); });
+    return static_cast<std::size_t>(nearest - walls.begin());
+  };
+  const auto longest =
+      static_cast<std::size_t>(std::ranges::max_element(lines, {}, &FloorLine::length) - lines.begin());
+  RecycledVector<Pair> pairs{{longest, nearest_wall(longest)}};
+  if (const auto other = across(lines, longest)) pairs.push_back({*other, nearest_wall(*other)});
+  return pairs;
+}
+
+/// Parallel walls cannot both be meant, and a line of the other handedness is none of the field's.
+bool turn_alike(const FloorLine& a, const FloorLine& b, const Wall& of_a, const Wall& of_b) {
+  return std::abs(wrap_angle(b.normal - a.normal - (of_b.normal - of_a.normal))) <= kPi / 4;
+}
+
+/// Turns two lines to the closest orthogonal pair: the one whose direction is known less turns more.
+void orthogonalize(FloorLine& a, FloorLine& b) {
+  const double off = off_orthogonal(a.normal, b.normal);
+  const double of_a = a.sigma_normal * a.sigma_normal, of_b = b.sigma_normal * b.sigma_normal;
+  a.normal += off * of_a / (of_a + of_b);
+  b.normal -= off * of_b / (of_a + of_b);
+}
+
+}  // namespace
+
+BoundaryFix pose_by_boundary(const FieldTarget& target, const BoundaryObservation& seen,
+                             const std::optional<PoseGaussian>& predicted) {
+  BoundaryFix fix;
+  fix.pose = predicted;
+  const auto why = [&](std::string_view reason) { fix.why.append(fix.why.empty() ? "" : ", ").append(reason); };
+  RecycledVector<FloorLine> lines;
+  for (const BoundarySegment& segment : seen.segments) lines.push_back(floor_line(segment, seen.camera));
+  if (lines.empty()) {
+    why("no line of the boundary");
     return fix;
   }
+  const std::array<Wall, 4> walls = walls_of(target.extent);
+
+  RecycledVector<Pair> pairs = pairs_by_goal(target, seen, lines);
+  if (pairs.empty() && predicted) pairs = pairs_by_orientation(walls, lines, predicted->theta);
+  if (pairs.empty()) {
+    why("lines, but neither a goal nor an orientation to tell them apart");
+    return fix;
+  }
+  if (pairs.size() == 2) {
+    FloorLine &a = lines[pairs[0].line], &b = lines[pairs[1].line];
+    if (turn_alike(a, b, walls[pairs[0].wall], walls[pairs[1].wall])) {
+      orthogonalize(a, b);
+    } else {
+      pairs.pop_back();
+      why("the second line turns the wrong way");
+    }
+  }
+  if (!predicted && pairs.size() < 2) {
+    why("one line does not tell where along it");
+    return fix;
+  }
+
   // With nothing known before, the lines alone: a prediction that says nothing.
   PoseGaussian pose = predicted
                           ? *predicted
                           : hardly_known({0, 0, wrap_angle(walls[pairs[0].wall].normal - lines[pairs[0].line].normal)});
-  // A line that lies where the field has none is refused.
   for (const auto& [line, wall] : pairs) {
     constexpr double margin = 0.3;  // [m]
-    if (lines[line].distance() <= walls[wall].distance + walls[(wall + 2) % 4].distance + margin) continue;
-    fix.why.append(walls[wall].name).append(" would be farther than the field is wide");
-    return fix;
-  }
-  for (const auto& [line, wall] : pairs) {
     // The direction first: how far off the middle is depends on it.
     PoseGaussian updated = pose;
-    if (!update(updated, direction_of(lines[line], walls[wall], updated)) ||
-        !update(updated, distance_of(lines[line], walls[wall], updated))) {
+    if (lines[line].distance() > walls[wall].distance + walls[(wall + 2) % 4].distance + margin) {
+      why(walls[wall].name);
+      fix.why.append(" would be farther than the field is wide");
+    } else if (!update(updated, direction_of(lines[line], walls[wall], updated)) ||
+               !update(updated, distance_of(lines[line], walls[wall], updated))) {
       ++fix.refused;
-      fix.why.append(fix.why.empty() ? "" : ", ").append(walls[wall].name).append(" is not where it was expected");
-      continue;
+      why(walls[wall].name);
+      fix.why.append(" is not where it was expected");
+    } else {
+      pose = updated;
+      fix.matches.push_back({line, walls[wall].name});
+      why(walls[wall].name);
     }
-    pose = updated;
-    fix.matches.push_back({line, walls[wall].name});
-    fix.why.append(fix.why.empty() ? "" : ", ").append(walls[wall].name);
   }
-  if (fix.matches.empty()) return fix;
+  if (fix.matches.size() < (predicted ? 1u : 2u)) {
+    fix.matches.clear();
+    return fix;
+  }
   fix.pose = pose;
   fix.kind = fix.matches.size() == 2 ? PoseKind::two_lines : PoseKind::one_line;
   return fix;
@@ -267,6 +283,7 @@ Localized localize_by_boundary(const FieldTarget& target, const PoseBelief& befo
   PoseBelief& belief = result.belief;
   belief.t = t;
   belief.fixed_at = fix.matches.empty() ? before.fixed_at : t;
+  belief.tied = before.tied || !fix.matches.empty();
   belief.doubts = fix.refused > 0 ? before.doubts + 1 : fix.matches.empty() ? before.doubts : 0;
   result.why = std::move(fix.why);
   if (!fix.pose) {

@@ -12,8 +12,19 @@
 namespace tassilo {
 namespace {
 
+/// Is it one place, of half a meter and 15 degrees, but for the twentieth that is beyond two standard deviations?
+/// Less is of no use to anyone who wants to drive somewhere.
+bool is_one_place(const PoseGaussian& pose) {
+  constexpr double most_sigma = 0.25, most_turn_sigma = 0.13;  // [m], [rad]
+  const double mean = 0.5 * (pose.covariance(0, 0) + pose.covariance(1, 1));
+  const double widest = mean + std::hypot(0.5 * (pose.covariance(0, 0) - pose.covariance(1, 1)), pose.covariance(0, 1));
+  return widest <= most_sigma * most_sigma && pose.covariance(2, 2) <= most_turn_sigma * most_turn_sigma;
+}
+
 /// Two fits to the same lines end closer than this.
-bool is_same_place(const PoseGaussian& a, const PoseGaussian& b) { return are_near(a, b, 0.3, 0.2); }
+bool is_same_place(const PoseGaussian& a, const PoseGaussian& b) {
+  return are_near(a, b, 0.3, 0.2) && is_one_place(a) == is_one_place(b);
+}
 
 /// May wheels that lost their grip have brought us there?
 bool is_slip(const PoseGaussian& from, const PoseGaussian& to) { return are_near(from, to, 0.7, 0.5); }
@@ -106,6 +117,7 @@ Localized localize(const FieldTarget& target, const PoseBelief& before, const Ro
   belief.t = t;
   belief.fixed_at = before.fixed_at;
   belief.doubts = before.doubts;
+  belief.tied = before.tied;
 
   std::optional<PoseFit> best;
   double best_weight = 0;
@@ -116,8 +128,13 @@ Localized localize(const FieldTarget& target, const PoseBelief& before, const Ro
     best = std::move(fit);
     best_weight = weight;
   };
-  for (const PoseHypothesis& one : before.hypotheses)
-    believe(fit_pose(target, seen, moved(one.pose, motion)), one.log_weight);
+  for (const PoseHypothesis& one : before.hypotheses) {
+    const PoseGaussian prior = moved(one.pose, motion);
+    if (is_one_place(prior))
+      believe(fit_pose(target, seen, prior), one.log_weight);
+    else
+      for (PoseFit& fit : fit_poses(target, seen, prior, !before.tied)) believe(std::move(fit), one.log_weight);
+  }
   // Two lines and more that the best place does not explain: perhaps it is another.
   constexpr int enough_marks = 16, enough_doubts = 3;
   if (best && best->marks_seen >= enough_marks) {
@@ -150,11 +167,17 @@ Localized localize(const FieldTarget& target, const PoseBelief& before, const Ro
     result.why.append(std::to_string(belief.hypotheses.size())).append(" places explain what is seen");
     return result;
   }
+  if (!is_one_place(belief.hypotheses.front().pose)) {
+    result.why.append("too uncertain to be told: ").append(std::to_string(best->lines_explained)).append(" of ");
+    result.why.append(std::to_string(best->lines_seen)).append(" lines explained");
+    return result;
+  }
   PoseSeen told =
       told_pose(belief.hypotheses.front().pose, tied ? PoseKind::model : PoseKind::predicted, t - belief.fixed_at);
   told.mirror = shares.best < options.certain;
   result.pose = told;
   belief.told = true;
+  belief.tied = belief.tied || tied;
   result.why.append(std::to_string(best->lines_explained)).append(" of ").append(std::to_string(best->lines_seen));
   result.why.append(told.mirror ? " lines explained, by the mirrored place as well" : " lines explained");
   return result;

@@ -29,13 +29,15 @@ struct Localized {
 
 /// The belief at time t from the one before, the motion between and what is seen at t.
 ///
-/// Each hypothesis is moved, fitted to what is seen and weighted by how well that fits. Where there is none, or the
-/// best one has not explained what is seen for some frames, all poses that do are added. Certain is what holds all but
-/// a twentieth of the belief; with the point-mirrored place as rival, the pose is marked `mirror`.
+/// Each hypothesis is moved, fitted to what is seen and weighted by how well that fits. One that is wider than one
+/// place (half a meter and 15 degrees, but for a twentieth) may hold several poses that do: all of them follow it.
+/// Where there is none, or the best one has not explained what is seen for some frames, all poses that do are added.
+/// Certain is what holds all but a twentieth of the belief and is no wider than one place; with the point-mirrored
+/// place as rival, the pose is marked `mirror`.
 ///
 /// source   multi-hypothesis Kalman filter: P. Jensfelt, S. Kristensen, "Active global localization for a mobile robot
 ///          using multiple hypothesis tracking", IEEE T-RA 17(5), 2001; own
-/// cost     some 20 us a hypothesis; some ms where all poses are searched
+/// cost     some 20 us a hypothesis, a millisecond or two for a wide one; some ms where all poses are searched
 Localized localize(const FieldTarget& target, const PoseBelief& before, const RobotMotion& motion,
                    const PoseObservation& seen, double t, const LocalizeOptions& options);
 

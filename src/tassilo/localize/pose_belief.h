@@ -41,6 +41,7 @@ struct PoseBelief {
   double t = 0;  ///< [s]
   RecycledVector<PoseHypothesis> hypotheses;
   double fixed_at = 0;  ///< When the best one was last tied to the field. [s]
+  bool tied = false;    ///< Was the field ever seen from where it was told? Then the mount is as known.
   bool told = false;    ///< One place, or it and its mirror, were sure enough to be told.
   int doubts = 0;       ///< Frames in a row, or nearly so, that the best one did not explain.
 };

@@ -1,6 +1,7 @@
 #include "tassilo/localize/pose_fit.h"
 
 #include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -47,6 +48,35 @@ RecycledVector<SeenLine> seen_lines(std::span<const LineMark> marks) {
   return lines;
 }
 
+/// Where seen floor ends.
+struct FloorEnd {
+  FloorPoint at;
+  double range = 0;  ///< [m]
+};
+RecycledVector<FloorEnd> floor_ends(const FreeSpace* space) {
+  RecycledVector<FloorEnd> ends;
+  for (std::size_t k = 0; space != nullptr && k < space->ranges.size(); ++k) {
+    if (space->states[k] == SectorState::unseen) continue;
+    const double angle = space->angle_min + static_cast<double>(k) * space->angle_increment;
+    ends.push_back({space->origin + space->ranges[k] * FloorPoint{std::cos(angle), std::sin(angle)}, space->ranges[k]});
+  }
+  return ends;
+}
+
+/// How far a robot that drives is from standing level: its front down, its right side down. [rad]
+struct Tilt {
+  double pitch = 0, roll = 0;
+};
+/// Where a place of the floor is if the robot that saw it was tilted.
+FloorPoint tilted(FloorPoint p, const Point3<RobotFrame>& eye, const Tilt& tilt) {
+  const Eigen::Vector3d ray =
+      Eigen::AngleAxisd(tilt.pitch, Eigen::Vector3d::UnitY()) *
+      (Eigen::AngleAxisd(tilt.roll, Eigen::Vector3d::UnitX()) * Eigen::Vector3d(p.x - eye.x, p.y - eye.y, -eye.z));
+  constexpr double least_down = 0.01;  // [m] at the horizon and above it no floor is seen
+  const double scale = eye.z / std::max(-ray.z(), least_down);
+  return {eye.x + scale * ray.x(), eye.y + scale * ray.y()};
+}
+
 double angle_of(const FieldLine& line) { return std::atan2(line.q.y - line.p.y, line.q.x - line.p.x); }
 
 /// Distance of a point from a line's stretch. [m]
@@ -56,9 +86,13 @@ double distance_from(const FieldLine& line, FieldPoint p) {
   return distance(p, line.p + share * along);
 }
 
-constexpr double kCap = 9;           // squared residuals beyond three sigmas say no more
-constexpr double kUnexplained = 8;   // log likelihood that a seen line is none of the field's costs
-constexpr double kMostEvidence = 6;  // independent places of a line: they share blur and mount
+constexpr double kCap = 9;             // squared residuals beyond three sigmas say no more
+constexpr double kUnexplained = 8;     // log likelihood that a seen line is none of the field's costs
+constexpr double kMostEvidence = 6;    // independent places of a line: they share blur and mount
+constexpr double kTiltSigma = 0.0175;  // [rad] a robot that drives nods and rolls by up to two degrees
+// Where the prior's share counts, a line that is none of the field's costs this more. One in twenty is none (3); one
+// that is lies within centimeters and degrees of its place instead of anywhere on the floor (10, of which 8 are above).
+constexpr double kStray = 5;
 constexpr double kGoalCap = 25;
 constexpr double kPostSigma = 0.015;  // [rad] a pixel or two, and the width of a post's rim
 constexpr double kGoalSigma = 0.04;   // [rad] of a visible part that may lie anywhere in the mouth
@@ -75,9 +109,24 @@ double y_of_left_post(const FieldModel::Goal& goal) {
 class Fitter {
  public:
   Fitter(const FieldTarget& target, const PoseObservation& seen)
-      : target_(target), seen_(seen), lines_(seen_lines(seen.marks)), of_(lines_.size(), -1) {}
+      : target_(target),
+        seen_(seen),
+        lines_(seen_lines(seen.marks)),
+        floor_ends_(floor_ends(seen.free_space)),
+        of_(lines_.size(), -1) {}
 
   const RecycledVector<SeenLine>& lines() const { return lines_; }
+
+  /// Is it known where the marks were seen from?
+  bool knows_eye() const { return !seen_.marks.empty() && seen_.marks.front().eye.z > 0; }
+  /// Sees everything as a robot does that is tilted; only where the eye is known.
+  void tilt(const Tilt& tilt) {
+    tilted_.assign(seen_.marks.begin(), seen_.marks.end());
+    for (LineMark& mark : tilted_) mark.at = tilted(mark.at, mark.eye, tilt);
+    lines_ = seen_lines(tilted_);
+    floor_ends_ = floor_ends(seen_.free_space);
+    for (FloorEnd& end : floor_ends_) end.at = tilted(end.at, tilted_.front().eye, tilt);
+  }
 
   /// How well a pose explains what is seen; `slack` is how far off the pose may be at the marks. [m]
   double associate(const PoseGaussian& pose, double slack, double turn_slack) {
@@ -115,9 +164,13 @@ class Fitter {
   }
 
   /// One step of Gauss-Newton from `pose`; the information of all measurements but the prior.
-  void add_measurements(const PoseGaussian& pose, Eigen::Matrix3d& information, Eigen::Vector3d& gradient) const {
+  /// Unknowns: x, y, theta; with five of them pitch and roll as well.
+  template <int unknowns>
+  void add_measurements(const PoseGaussian& pose, Eigen::Matrix<double, unknowns, unknowns>& information,
+                        Eigen::Matrix<double, unknowns, 1>& gradient) const {
+    using Row = Eigen::Matrix<double, unknowns, 1>;
     const double c = std::cos(pose.theta), s = std::sin(pose.theta);
-    const auto add = [&](const Eigen::Vector3d& by_pose, double residual, double sigma, double scale) {
+    const auto add = [&](const Row& by_pose, double residual, double sigma, double scale) {
       const double normed = residual / scale, robust = 1 / (1 + normed * normed / 4);  // Cauchy, two sigmas
       const double weight = robust / (sigma * sigma);
       information += weight * by_pose * by_pose.transpose();
@@ -146,14 +199,32 @@ class Fitter {
         }
         // What all marks of a line share does not average out.
         const double own = mark.sigma * mark.sigma, common = mark.common_sigma * mark.common_sigma;
-        add({nx, ny, -nx * turned_y + ny * turned_x}, residual, std::sqrt(own + n * common), std::sqrt(own + common));
+        Row row = Row::Zero();
+        row.template head<3>() << nx, ny, -nx * turned_y + ny * turned_x;
+        if constexpr (unknowns == 5) {
+          // Out from the eye, over its height: one radian moves a place by so much.
+          const double ox = mark.at.x - mark.eye.x, oy = mark.at.y - mark.eye.y, h = mark.eye.z;
+          const double mx = c * nx + s * ny, my = -s * nx + c * ny;  // the normal as the robot sees it
+          row[3] = -mx * (h + ox * ox / h) - my * ox * oy / h;
+          row[4] = mx * ox * oy / h + my * (h + oy * oy / h);
+        }
+        add(row, residual, std::sqrt(own + n * common), std::sqrt(own + common));
       }
     }
     for_goals(pose, [&](FieldPoint at, double bearing_seen, double sigma) {
       const double dx = at.x - pose.x, dy = at.y - pose.y, square = std::max(dx * dx + dy * dy, 0.04);
       const double residual = wrap_angle(std::atan2(dy, dx) - pose.theta - bearing_seen);
-      add({dy / square, -dx / square, -1}, residual, sigma, sigma);
+      Row row = Row::Zero();
+      row.template head<3>() << dy / square, -dx / square, -1;
+      add(row, residual, sigma, sigma);
     });
+  }
+
+  /// Nothing that is seen is of the field.
+  PoseFit nothing(const PoseGaussian& pose) {
+    std::ranges::fill(of_, -1);
+    return result(
+        pose, -kUnexplained * static_cast<double>(lines_.size()) + goals(pose) + free_floor(pose.field_from_robot()));
   }
 
   PoseFit result(const PoseGaussian& pose, double log_likelihood) const {
@@ -214,17 +285,13 @@ class Fitter {
   }
   /// Floor that is seen does not lie behind a wall.
   double free_floor(const FieldFromRobot& field_from_robot) const {
-    if (seen_.free_space == nullptr || !target_.field.walls) return 0;
-    const FreeSpace& space = *seen_.free_space;
+    if (!target_.field.walls) return 0;
     constexpr double margin = 0.2, most = 8;  // [m]; log likelihood
     double total = 0;
-    for (std::size_t k = 0; k < space.ranges.size(); ++k) {
-      if (space.states[k] == SectorState::unseen) continue;
-      const double angle = space.angle_min + static_cast<double>(k) * space.angle_increment;
-      const FieldPoint p =
-          field_from_robot * (space.origin + space.ranges[k] * FloorPoint{std::cos(angle), std::sin(angle)});
+    for (const FloorEnd& end : floor_ends_) {
+      const FieldPoint p = field_from_robot * end.at;
       const Interval &x = target_.field.walls->x, &y = target_.field.walls->y;
-      const double slack = margin + 0.05 * space.ranges[k];
+      const double slack = margin + 0.05 * end.range;
       // Goals have floor, too.
       double depth = 0;
       for (const FieldModel::Goal& goal : target_.field.goals)
@@ -238,38 +305,68 @@ class Fitter {
 
   const FieldTarget& target_;
   const PoseObservation& seen_;
+  RecycledVector<LineMark> tilted_;  ///< Empty where it was not asked for.
   RecycledVector<SeenLine> lines_;
+  RecycledVector<FloorEnd> floor_ends_;
   RecycledVector<int> of_;  ///< Model line (or arc) of each seen line, -1: none.
 };
 
-PoseFit fit_with(Fitter& fitter, const PoseGaussian& prior) {
-  const Eigen::Matrix3d prior_information = prior.covariance.inverse();
-  const Eigen::Vector3d start(prior.x, prior.y, prior.theta);
-  PoseGaussian pose = prior;
-  Eigen::Matrix3d covariance = prior.covariance;
+struct Fitted {
+  PoseFit fit;
+  double log_share = 0;  ///< Of the prior's belief that is at this place: how likely it was, how much of it fits in.
+};
+
+/// From `start`, whose covariance says how far off the lines may be there. Unknowns: x, y, theta; with five of them the
+/// robot's pitch and roll, too, beginning at `tilt`. Explained is what lies within `most_slack` in the end. [m]
+template <int unknowns>
+Fitted fit_with(Fitter& fitter, const PoseGaussian& prior, const PoseGaussian& start, double most_slack = 0.3,
+                Tilt tilt = {}) {
+  using Matrix = Eigen::Matrix<double, unknowns, unknowns>;
+  using Vector = Eigen::Matrix<double, unknowns, 1>;
+  Matrix prior_information = Matrix::Zero();
+  prior_information.template topLeftCorner<3, 3>() = prior.covariance.inverse();
+  for (int k = 3; k < unknowns; ++k) prior_information(k, k) = 1 / (kTiltSigma * kTiltSigma);
+  PoseGaussian pose = start;
+  Matrix covariance = Matrix::Zero();
+  covariance.template topLeftCorner<3, 3>() = start.covariance;
+  const auto from_prior = [&] {
+    Vector off = Vector::Zero();
+    off.template head<3>() << pose.x - prior.x, pose.y - prior.y, wrap_angle(pose.theta - prior.theta);
+    if constexpr (unknowns == 5) off.template tail<2>() << tilt.pitch, tilt.roll;
+    return off;
+  };
   constexpr int iterations = 8;
   for (int i = 0; i < iterations; ++i) {
     // Lines are told apart by where they are once it is known where we are.
     const double slack = std::min(2 * std::sqrt(covariance(0, 0) + covariance(1, 1)), 0.6);
     const double turn = std::min(2 * std::sqrt(covariance(2, 2)), 0.35);
+    if constexpr (unknowns == 5) fitter.tilt(tilt);
     fitter.associate(pose, slack, turn);
-    Eigen::Matrix3d information = prior_information;
-    const Eigen::Vector3d off(pose.x - start[0], pose.y - start[1], wrap_angle(pose.theta - start[2]));
-    Eigen::Vector3d gradient = prior_information * off;
-    fitter.add_measurements(pose, information, gradient);
-    const Eigen::LDLT<Eigen::Matrix3d> solver(information);
-    const Eigen::Vector3d step = -solver.solve(gradient);
+    Matrix information = prior_information;
+    Vector gradient = prior_information * from_prior();
+    fitter.add_measurements<unknowns>(pose, information, gradient);
+    const Eigen::LDLT<Matrix> solver(information);
+    const Vector step = -solver.solve(gradient);
     if (!step.allFinite()) break;
     pose.x += step[0];
     pose.y += step[1];
     pose.theta = wrap_angle(pose.theta + step[2]);
-    covariance = solver.solve(Eigen::Matrix3d::Identity());
+    if constexpr (unknowns == 5) {
+      constexpr double most = 3 * kTiltSigma;
+      tilt = {std::clamp(tilt.pitch + step[3], -most, most), std::clamp(tilt.roll + step[4], -most, most)};
+    }
+    covariance = solver.solve(Matrix::Identity());
     if (i > 1 && std::hypot(step[0], step[1]) < 1e-4 && std::abs(step[2]) < 1e-4) break;
   }
-  pose.covariance = 0.5 * (covariance + covariance.transpose());
-  const double slack = std::min(std::sqrt(covariance(0, 0) + covariance(1, 1)), 0.3);
+  const Eigen::Matrix3d of_pose = covariance.template topLeftCorner<3, 3>();
+  pose.covariance = 0.5 * (of_pose + of_pose.transpose());
+  const double slack = std::min(std::sqrt(covariance(0, 0) + covariance(1, 1)), most_slack);
+  if constexpr (unknowns == 5) fitter.tilt(tilt);
   const double log_likelihood = fitter.associate(pose, slack, 0.05);
-  return fitter.result(pose, log_likelihood);
+  const Vector off = from_prior();
+  const double likely = -0.5 * off.dot(prior_information * off),
+               fits_in = 0.5 * std::log(covariance.determinant() * prior_information.determinant());
+  return {fitter.result(pose, log_likelihood), likely + fits_in};
 }
 
 /// A place worth a fit, and how well it explains what is seen as it is.
@@ -298,14 +395,26 @@ FloorPoint center_of(const SeenLine& circle) {
 /// Collects poses at which a few of the things that are seen lie where the field has them.
 class Search {
  public:
-  Search(const FieldTarget& target, const PoseObservation& seen, Fitter& fitter)
-      : target_(target), seen_(seen), fitter_(fitter) {}
+  /// `prior`: null where nothing is known.
+  Search(const FieldTarget& target, const PoseObservation& seen, Fitter& fitter, const PoseGaussian* prior = nullptr)
+      : target_(target), seen_(seen), fitter_(fitter), prior_(prior) {
+    if (prior != nullptr) information_ = prior->covariance.inverse();
+  }
 
-  /// On the field, or just off it.
+  /// On the field, or just off it; within what is known before.
   bool may_stand(const PoseGaussian& pose) const {
+    constexpr double gate = 16;  // of a Gaussian in three dimensions all but a thousandth lies within
+    if (prior_ != nullptr && from_prior(pose) > gate) return false;
     constexpr double margin = 0.5;  // [m]
     return std::abs(pose.x) <= target_.field.length / 2 + margin &&
            std::abs(pose.y) <= target_.field.width / 2 + margin;
+  }
+
+  /// Squared distance from the prior in its standard deviations.
+  double from_prior(const PoseGaussian& pose) const {
+    if (prior_ == nullptr) return 0;
+    const Eigen::Vector3d off(pose.x - prior_->x, pose.y - prior_->y, wrap_angle(pose.theta - prior_->theta));
+    return off.dot(information_ * off);
   }
 
   /// Best first.
@@ -324,6 +433,7 @@ class Search {
     if (straight.size() > most_straight) straight.resize(most_straight);
     for (std::size_t i = 0; i < straight.size(); ++i)
       for (const double theta : turns(*straight[i])) {
+        if (prior_ != nullptr) by_line(*straight[i], theta);
         for (std::size_t j = i + 1; j < straight.size(); ++j) by_two_lines(*straight[i], *straight[j], theta);
         if (center && !target_.curves.arcs.empty()) by_point(*center, target_.curves.arcs.front().center, theta);
         for (const Goal& goal : seen_.goals)
@@ -339,7 +449,7 @@ class Search {
   /// With a covariance for the fit that says little: a metre, 18 degrees.
   void offer(double x, double y, double theta) {
     const PoseGaussian pose{x, y, wrap_angle(theta), Eigen::Vector3d(1, 1, 0.1).asDiagonal()};
-    if (may_stand(pose)) found_.push_back({pose, fitter_.associate(pose, 0.15, 0.15)});
+    if (may_stand(pose)) found_.push_back({pose, fitter_.associate(pose, 0.15, 0.15) - 0.5 * from_prior(pose)});
   }
   /// Orientations that bring a seen line along one of the field's.
   RecycledVector<double> turns(const SeenLine& line) const {
@@ -361,6 +471,16 @@ class Search {
   static FieldPoint turned(FloorPoint p, double theta) {
     const double c = std::cos(theta), s = std::sin(theta);
     return {c * p.x - s * p.y, s * p.x + c * p.y};
+  }
+  /// A line is one of the field's; along it the robot is where the prior has it.
+  void by_line(const SeenLine& line, double theta) {
+    const FieldPoint middle = FieldPoint{prior_->x, prior_->y} + turned(line.middle, theta);
+    for (const FieldLine& model : target_.curves.lines) {
+      if (!may_be(line, model, theta, 0.1)) continue;
+      const FieldPoint along = model.q - model.p;
+      const double off = cross(along, middle - model.p) / dot(along, along);
+      offer(prior_->x + off * along.y, prior_->y - off * along.x, theta);
+    }
   }
   /// Two lines that cross are two of the field's.
   void by_two_lines(const SeenLine& a, const SeenLine& b, double theta) {
@@ -396,6 +516,8 @@ class Search {
   const FieldTarget& target_;
   const PoseObservation& seen_;
   Fitter& fitter_;
+  const PoseGaussian* prior_;
+  Eigen::Matrix3d information_ = Eigen::Matrix3d::Zero();  ///< Of the prior.
   RecycledVector<Candidate> found_;
 };
 
@@ -415,7 +537,63 @@ const FieldModel::Goal* goal_of(const FieldTarget& target, GoalColor color) {
 
 PoseFit fit_pose(const FieldTarget& target, const PoseObservation& seen, const PoseGaussian& prior) {
   Fitter fitter(target, seen);
-  return fit_with(fitter, prior);
+  return fit_with<3>(fitter, prior, prior).fit;
+}
+
+RecycledVector<PoseFit> fit_poses(const FieldTarget& target, const PoseObservation& seen, const PoseGaussian& prior,
+                                  bool may_tilt) {
+  Fitter fitter(target, seen);
+  RecycledVector<Fitted> found;
+  const auto weight = [](const Fitted& one) {
+    return one.fit.log_likelihood + one.log_share - kStray * (one.fit.lines_seen - one.fit.lines_explained);
+  };
+  const auto add = [&](Fitted one) {
+    const auto same = std::ranges::find_if(found, [&](const Fitted& other) {
+      return are_near(other.fit.pose, one.fit.pose, 0.2, 0.15) &&
+             (other.fit.lines_explained > 0) == (one.fit.lines_explained > 0);
+    });
+    if (same == found.end())
+      found.push_back(std::move(one));
+    else if (weight(*same) < weight(one))
+      *same = std::move(one);
+  };
+  may_tilt = may_tilt && fitter.knows_eye();
+  const auto fit_from = [&](const PoseGaussian& start, const Tilt& tilt) {
+    // A line that is one of the field's has drawn the pose to itself. One that lies further off has not, and if it
+    // counted as explained, a loose pose would explain all.
+    constexpr double slack = 0.05;
+    add(may_tilt ? fit_with<5>(fitter, prior, start, slack, tilt) : fit_with<3>(fitter, prior, start, slack));
+  };
+  // Poses from lines are close to the right ones only if the robot's pitch is; a start for each degree.
+  for (const double pitch : {0., -kTiltSigma, kTiltSigma, -2 * kTiltSigma, 2 * kTiltSigma}) {
+    if (pitch != 0 && !may_tilt) break;
+    const Tilt tilt{pitch, 0};
+    if (may_tilt) fitter.tilt(tilt);
+    Search search(target, seen, fitter, &prior);
+    constexpr std::size_t most_fits = 12;  // each pitch
+    RecycledVector<PoseGaussian> tried;
+    for (auto& [pose, score] : search.candidates()) {
+      if (tried.size() == most_fits) break;
+      if (std::ranges::any_of(tried, [&](const PoseGaussian& other) { return are_near(other, pose, 0.15, 0.1); }))
+        continue;
+      tried.push_back(pose);
+      pose.covariance = Eigen::Vector3d(0.01, 0.01, 0.01).asDiagonal();  // its lines lie where the field's are
+      fit_from(pose, tilt);
+    }
+  }
+  fit_from(prior, {});
+  // Or nothing that is seen is of the field.
+  if (may_tilt) fitter.tilt({});
+  add({fitter.nothing(prior)});
+  std::ranges::sort(found, std::greater<>{}, weight);
+  constexpr std::size_t most_found = 12;
+  if (found.size() > most_found) found.resize(most_found);
+  RecycledVector<PoseFit> fits;
+  for (Fitted& one : found) {
+    one.fit.log_likelihood = weight(one) - found.front().log_share;
+    fits.push_back(std::move(one.fit));
+  }
+  return fits;
 }
 
 RecycledVector<PoseFit> search_poses(const FieldTarget& target, const PoseObservation& seen) {
@@ -430,7 +608,7 @@ RecycledVector<PoseFit> search_poses(const FieldTarget& target, const PoseObserv
     if (std::ranges::any_of(tried, [&](const PoseGaussian& other) { return are_near(other, pose, 0.15, 0.1); }))
       continue;
     tried.push_back(pose);
-    PoseFit fit = fit_with(fitter, pose);
+    PoseFit fit = fit_with<3>(fitter, pose, pose).fit;
     if (!is_tied_down(fit.pose) || !search.may_stand(fit.pose)) continue;
     const auto is_it = [&](const PoseFit& other) { return are_near(other.pose, fit.pose, 0.2, 0.15); };
     if (std::ranges::none_of(found, is_it)) found.push_back(std::move(fit));

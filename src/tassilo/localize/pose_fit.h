@@ -43,6 +43,18 @@ struct PoseFit {
 /// source   Gauss-Newton with Cauchy weights; P. J. Huber, "Robust Statistics", 1981; own association
 PoseFit fit_pose(const FieldTarget& target, const PoseObservation& seen, const PoseGaussian& prior);
 
+/// The same for a prior so wide that several poses within it may explain what is seen: all of them, most likely first,
+/// the last resort among them that nothing seen is of the field. Likelihoods are those of what is seen, times the share
+/// of the prior's belief that a pose stands for, relative to the first one's share.
+///
+/// may_tilt   the robot may nod and roll by up to two degrees as it drives; counts where marks tell the eye
+///
+/// cost     a millisecond or two; safe from any thread
+/// source   mixture with the weights of Laplace's method: D. MacKay, "Information Theory, Inference, and Learning
+///          Algorithms", 2003, chapter 27; own
+RecycledVector<PoseFit> fit_poses(const FieldTarget& target, const PoseObservation& seen, const PoseGaussian& prior,
+                                  bool may_tilt);
+
 /// Poses that explain a frame with nothing known before, best first: from pairs of lines that cross, the circle and a
 /// line, goals and a line. Empty when what is seen does not tie all of x, y, theta down.
 ///

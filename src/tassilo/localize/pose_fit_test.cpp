@@ -105,6 +105,52 @@ TEST(FitPose, ALineThatIsNoneOfTheFieldsIsLeftOut) {
   EXPECT_LT(fit.log_likelihood, clean.log_likelihood);
 }
 
+TEST(FitPoses, HaveTheRightOneAndAreHonestWhereTheRobotTilts) {
+  const FieldTarget target(plain_field(true));
+  double sum = 0, sum_of_level = 0;
+  int count = 0, right = 0;
+  unsigned seed = 0;
+  for (const FieldFromRobot& truth : poses(200, 7)) {
+    SCOPED_TRACE(++seed);
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal;
+    const double pitch = 0.0175 * normal(random), roll = 0.0175 * normal(random);
+    const auto seen =
+        seen_from(target, truth, {.goals = false, .seed = seed, .eye_height = 0.3, .pitch = pitch, .roll = roll});
+    if (seen.marks.empty() || seen.marks.front().line == seen.marks.back().line) continue;
+    const PoseGaussian prior = prior_at(truth.x + 0.2 * normal(random), truth.y + 0.2 * normal(random),
+                                        truth.theta() + 0.2 * normal(random), 0.2, 0.2);
+    const auto squared_error = [&](const PoseGaussian& pose) {
+      const Eigen::Vector3d off(pose.x - truth.x, pose.y - truth.y, wrap_angle(pose.theta - truth.theta()));
+      return std::min(100., off.dot(pose.covariance.ldlt().solve(off)));
+    };
+    const auto fits = fit_poses(target, seen.observation(), prior, true);
+    ASSERT_FALSE(fits.empty());
+    sum += squared_error(fits.front().pose);
+    sum_of_level += squared_error(fit_pose(target, seen.observation(), prior).pose);
+    right += squared_error(fits.front().pose) < 20;
+    ++count;
+  }
+  ASSERT_GT(count, 100);
+  EXPECT_LT(sum / count, 8);  // 3 where marks were exact and each was of the line it seems to be
+  EXPECT_GT(sum_of_level / count, 30);
+  EXPECT_GT(right, 0.95 * count);
+}
+
+TEST(FitPoses, ALineThatIsNoneOfTheFieldsLeavesThePrior) {
+  const FieldTarget target(plain_field(true));
+  PoseObservation observation;
+  std::vector<LineMark> marks;
+  for (int k = 0; k < 20; ++k)  // slanting where no line of the field is
+    marks.push_back({{1 + 0.05 * k, -0.4 + 0.05 * k}, {0.7, -0.7}, 0.003, 0.002, LineKind::line, 0});
+  observation.marks = marks;
+  const auto fits = fit_poses(target, observation, prior_at(1.5, 0.3, 0, 0.1, 0.05), true);
+  ASSERT_FALSE(fits.empty());
+  EXPECT_EQ(fits.front().lines_explained, 0);
+  EXPECT_NEAR(fits.front().pose.x, 1.5, 1e-9);
+  EXPECT_NEAR(std::sqrt(fits.front().pose.covariance(0, 0)), 0.1, 1e-9);
+}
+
 TEST(SearchPoses, HasThePoseAndItsMirrorWhereNoGoalIsSeen) {
   for (const bool walls : {true, false}) {
     const FieldTarget target(plain_field(walls));

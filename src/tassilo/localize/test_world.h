@@ -42,8 +42,20 @@ struct Sight {
   double half_angle = 0.7, range = 5;  ///< [rad, m]
   bool goals = true;
   unsigned seed = 1;
-  double noise = 1;  ///< Times sigma.
+  double noise = 1;            ///< Times sigma.
+  double eye_height = 0;       ///< [m] 0: marks do not say where they were seen from.
+  double pitch = 0, roll = 0;  ///< Of a robot whose camera file has it level: front down, right side down. [rad]
 };
+/// Where a robot that is tilted, but has itself level, believes a place of the floor.
+inline FloorPoint believed_level(FloorPoint p, const Sight& sight) {
+  // The ray in the frame of the robot: not rolled, then not pitched.
+  const double cp = std::cos(sight.pitch), sp = std::sin(sight.pitch), cr = std::cos(sight.roll),
+               sr = std::sin(sight.roll);
+  const double h = sight.eye_height;
+  const double x = cp * p.x + sp * h, z = sp * p.x - cp * h;
+  const double y = cr * p.y + sr * z, down = -(-sr * p.y + cr * z);
+  return {h / down * x, h / down * y};
+}
 inline SeenFromPose seen_from(const FieldTarget& target, const FieldFromRobot& field_from_robot,
                               const Sight& sight = {}) {
   SeenFromPose seen;
@@ -59,6 +71,8 @@ inline SeenFromPose seen_from(const FieldTarget& target, const FieldFromRobot& f
       const auto& [at, across] = places[k];
       LineMark mark{at, across, 0.002 + 0.001 * dot(at, at), 0.002, kind, line};
       mark.at = at + sight.noise * mark.sigma * normal(random) * across;
+      mark.eye.z = sight.eye_height;
+      if (sight.eye_height > 0) mark.at = believed_level(mark.at, sight);
       seen.marks.push_back(mark);
     }
   };

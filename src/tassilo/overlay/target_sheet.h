@@ -15,7 +15,7 @@ struct TargetSheet {
   Marks marks = Marks::dots;
   int columns = 7, rows = 7;         ///< Of dots or inner corners. >= 1
   double pitch = .04, radius = .01;  ///< From point to point, and of a dot. [m], > 0
-  std::string caption = {};               ///< Beside the ruler.
+  std::string caption = {};          ///< Beside the ruler.
 };
 
 enum class SheetFormat { svg, pdf };

@@ -14,6 +14,7 @@ struct LineMark {
   LineKind kind = LineKind::line;
   int line = 0;  ///< Places of one line have the same number; kCircle: of the centre circle.
   static constexpr int kCircle = -1;
+  Point3<RobotFrame> eye = {};  ///< Of the camera that saw it. z is 0 where that is unknown. [m]
 };
 
 }  // namespace tassilo

@@ -18,6 +18,10 @@ bool is_url(const std::string& location) { return location.find("://") != std::s
 std::unique_ptr<FrameReader> make_reader(const SourceOptions& options) {
   namespace fs = std::filesystem;
   const std::string& location = options.location;
+  if (is_camera(location)) {
+    if (options.raw) throw Error(location, "is a camera, which says what its frames are");
+    return make_camera_reader(options, system_calls());
+  }
   const bool is_path = location != "-" && !is_url(location);
   std::error_code ignored;
   if (is_path && !fs::exists(location, ignored)) throw Error(location, "does not exist");
@@ -53,6 +57,7 @@ void RawFormat::check() const {
 void SourceOptions::check() const {
   if (location.empty()) throw Error("source", "is empty, must be a file, a folder, a URL or - (standard input)");
   if (raw) raw->check();
+  camera.check();
   if (!(fps >= 0) || !std::isfinite(fps)) throw Error("source.fps", "is " + std::to_string(fps) + ", must be >= 0");
   if (threads < 1) throw Error("source.threads", "is " + std::to_string(threads) + ", must be >= 1");
 }
@@ -82,6 +87,8 @@ std::optional<Frame> FrameSource::next() {
     throw;
   }
 }
+
+CameraCounts FrameSource::camera_counts() const { return reader_->counts(); }
 
 FrameSource open_source(const SourceOptions& options) {
   options.check();

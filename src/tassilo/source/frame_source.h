@@ -10,6 +10,7 @@
 
 #include "tassilo/base/error.h"
 #include "tassilo/image/frame.h"
+#include "tassilo/source/camera.h"
 
 // To add a kind of source: 1. a FrameReader in a file of its own (see internal/frame_reader.h); 2. when to take it, in
 // `open_source`; 3. its laws in frame_source_test.cpp.
@@ -29,7 +30,8 @@ struct RawFormat {
 };
 
 struct SourceOptions {
-  /// `-` (standard input), a file, a folder of PNG and JPEG images, or a URL that FFmpeg reads (rtsp, udp, http, ...).
+  /// `-` (standard input), a file, a folder of PNG and JPEG images, a URL that FFmpeg reads (rtsp, udp, http, ...), or
+  /// a camera, see is_camera.
   std::string location = {};
   /// Given: `location` is read as raw frames. Else the bytes must say what they are.
   std::optional<RawFormat> raw = {};
@@ -41,6 +43,9 @@ struct SourceOptions {
   int threads = 1;  ///< For decoding, where a codec has slices. >= 1
   /// Asked now and then while waiting for data, from the reading thread; true ends the source as if it were over.
   std::function<bool()> interrupted = {};
+  CameraOptions camera = {};  ///< For cameras only.
+  /// Told what happens to a camera, from the reading thread, while it reads.
+  std::function<void(const CameraNews&)> camera_news = {};
   /// Throws Error naming the first field out of range.
   void check() const;
 };
@@ -52,7 +57,8 @@ struct SourceInfo {
   int width = 0, height = 0;  ///< Of the first frame. [px]
   ColorRange range = ColorRange::limited;   ///< Of the first frame.
   std::optional<std::int64_t> frame_count;  ///< As far as the container tells; an estimate for progress bars.
-  bool live = false;  ///< A network stream: frames come when they come, and late ones are worth nothing.
+  /// A network stream or a camera: frames come when they come, and late ones are worth nothing.
+  bool live = false;
 };
 
 class FrameReader;
@@ -64,6 +70,10 @@ class FrameReader;
 /// `images_range`; alpha is ignored. Range: as tagged, else full for JPEG and yuvj formats, else limited. Values tagged
 /// BT.709 are not converted; the description says so.
 /// Time: the stored time stamps, each frame its own; constant rate only where the source has none.
+///
+/// A camera is grabbed by a thread of its own, and `next` gives the newest frame, whatever was missed meanwhile: it
+/// waits for one through stalls and absences, which `camera_news` tells. Its pixels are the driver's buffers; who keeps
+/// more than a few frames gets copies. Time is the driver's monotonic time of capture, since the UNIX epoch.
 class FrameSource {
  public:
   explicit FrameSource(std::unique_ptr<FrameReader> reader);
@@ -78,6 +88,8 @@ class FrameSource {
   std::optional<Frame> next();
 
   const SourceInfo& info() const { return info_; }
+  /// What a camera did not deliver so far; all 0 for other sources.
+  CameraCounts camera_counts() const;
 
  private:
   std::unique_ptr<FrameReader> reader_;

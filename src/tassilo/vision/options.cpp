@@ -211,6 +211,13 @@ std::vector<OptionInfo> vision_option_infos() {
   return infos;
 }
 
+std::map<std::string, double, std::less<>> option_values(VisionOptions options) {
+  std::map<std::string, double, std::less<>> values = options.own;
+  for (const Option& option : kOptions)
+    values[std::string(option.key)] = option.whole != nullptr ? option.whole(options) : option.real(options);
+  return values;
+}
+
 VisionOptions vision_options(std::span<const std::pair<std::string, Setting>> settings) {
   return vision_options(settings, built_in_stages());
 }

@@ -60,6 +60,8 @@ struct OptionInfo {
 };
 /// The options of all stages, without those that single alternatives bring along.
 std::vector<OptionInfo> vision_option_infos();
+/// The value of each option, by its key; those of single alternatives, too.
+std::map<std::string, double, std::less<>> option_values(VisionOptions options);
 
 struct StageRegistry;
 /// Options from the keys below `vision:`, and the names of stages. Throws Error with file, line and column for an

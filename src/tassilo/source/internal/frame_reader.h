@@ -5,6 +5,7 @@
 
 #include "tassilo/image/frame.h"
 #include "tassilo/source/frame_source.h"
+#include "tassilo/source/internal/system_calls.h"
 
 namespace tassilo {
 
@@ -16,6 +17,8 @@ class FrameReader {
   virtual std::optional<Frame> next() = 0;
   /// Name, description, frame count and live; the rest is read off the first frame. Asked after that frame was read.
   virtual SourceInfo info() const = 0;
+  /// Of a camera.
+  virtual CameraCounts counts() const { return {}; }
 };
 
 inline constexpr int kMaxFrameSize = 32767;  ///< Runs have 16-bit coordinates. [px]
@@ -30,6 +33,8 @@ std::unique_ptr<FrameReader> make_raw_reader(const SourceOptions& options);
 /// `folder`: all its images in natural order; else one image file.
 std::unique_ptr<FrameReader> make_image_reader(const SourceOptions& options);
 std::unique_ptr<FrameReader> make_video_reader(const SourceOptions& options);
+/// A camera, see is_camera; `calls` outlives the reader and all its frames.
+std::unique_ptr<FrameReader> make_camera_reader(const SourceOptions& options, SystemCalls& calls);
 
 /// Whether the file begins as PNG or JPEG files do and is no Motion JPEG by its name. False for unreadable files.
 bool is_image_file(const std::string& path);

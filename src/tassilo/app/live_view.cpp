@@ -1,0 +1,238 @@
+#include "tassilo/app/live_view.h"
+
+#include <algorithm>
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "tassilo/base/error.h"
+#include "tassilo/files/jpeg.h"
+#include "tassilo/files/json.h"
+#include "tassilo/files/scene_json.h"
+#include "tassilo/overlay/overlay.h"
+
+namespace tassilo {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kScene = "scene";
+constexpr const char* kPicture = "picture";
+
+std::string stages_json(const Configuration& configuration, const VisionChanges& changes) {
+  const VisionOptions& options = configuration.setup.vision.options;
+  const auto values = option_values(options);
+  const auto options_json = [&](const std::vector<OptionInfo>& infos) {
+    json list = json::array();
+    for (const OptionInfo& info : infos)
+      list.push_back({{"key", info.key},
+                      {"unit", info.unit},
+                      {"low", info.low},
+                      {"high", info.high},
+                      {"whole", info.whole},
+                      {"meaning", info.meaning},
+                      {"default", info.standard},
+                      {"value", values.at(info.key)},
+                      {"changed", changes.contains(info.key)}});
+    return list;
+  };
+  json stages = json::array();
+  for (const StageInfo& stage : stage_infos(configuration.setup.registry)) {
+    const auto entry = options.stages.find(stage.key);
+    json alternatives = json::array();
+    for (const StageInfo::Alternative& one : stage.alternatives) {
+      const bool is_default = &one == &stage.alternatives.front();
+      alternatives.push_back({{"name", one.name},
+                              {"meaning", one.meaning},
+                              {"default", is_default},
+                              {"chosen", entry != options.stages.end() ? entry->second == one.name : is_default},
+                              {"options", options_json(one.options)}});
+    }
+    stages.push_back({{"key", stage.key},
+                      {"meaning", stage.meaning},
+                      {"changed", changes.contains(stage.key)},
+                      {"alternatives", std::move(alternatives)},
+                      {"options", options_json(stage.options)}});
+  }
+  return stages.dump();
+}
+
+WebResponse refusal(int status, const std::string& why) { return {status, "text/plain; charset=utf-8", why + "\n"}; }
+
+}  // namespace
+
+void apply_changes(RobotSetup& setup, const VisionChanges& changes) {
+  auto settings = setup.settings;
+  std::erase_if(settings, [&](const auto& setting) { return changes.contains(setting.first); });
+  settings.insert(settings.end(), changes.begin(), changes.end());
+  setup.vision.options = vision_options(settings, setup.registry);
+}
+
+LiveView::LiveView(const WebOptions& options, std::string robot_file)
+    : robot_file_(std::move(robot_file)),
+      server_(
+          [&] {
+            WebOptions with_channels = options;
+            with_channels.channels = {kScene, kPicture};
+            return with_channels;
+          }(),
+          [this](const WebRequest& request) { return answer(request); }),
+      painter_([this] { draw_pictures(); }) {}
+
+LiveView::~LiveView() {
+  {
+    const std::lock_guard lock(mutex_);
+    ending_ = true;
+  }
+  wanted_.notify_all();
+  painter_.join();
+}
+
+void LiveView::begin(const std::string& source_name, const std::string& source_description,
+                     std::shared_ptr<const Configuration> now, Load load) {
+  const std::lock_guard lock(mutex_);
+  seen_.source_name = source_name;
+  seen_.source_description = source_description;
+  now_ = std::move(now);
+  load_ = std::move(load);
+}
+
+void LiveView::show(const Frame& frame, const Scene& scene, const VisionWorkspace& workspace,
+                    const std::shared_ptr<const Configuration>& configuration) {
+  if (server_.listeners(kScene) > 0)
+    server_.publish(kScene, std::make_shared<const std::string>(to_json_line(scene)), WebServer::Message::text);
+  const bool is_looked_at = server_.listeners(kPicture) > 0;
+  const std::lock_guard lock(mutex_);
+  // The rate of the last second or so.
+  constexpr double share = 0.05;
+  const auto now = std::chrono::steady_clock::now();
+  const double dt = std::chrono::duration<double>(now - seen_.shown_at).count();
+  if (seen_.frames > 0 && dt > 0) seen_.rate_hz += (seen_.rate_hz > 0 ? share : 1) * (1 / dt - seen_.rate_hz);
+  if (seen_.frames > 0) seen_.dropped += std::max<std::int64_t>(scene.frame - seen_.frame - 1, 0);
+  seen_.shown_at = now;
+  seen_.frame = scene.frame;
+  seen_.t = scene.t;
+  ++seen_.frames;
+  now_ = configuration;
+  if (!is_looked_at || drawing_) return;
+  snapshot_ = {frame, scene, workspace.surface, configuration};
+  wanted_.notify_one();
+}
+
+void LiveView::leave() {
+  const std::lock_guard loading(loading_);
+  const std::lock_guard lock(mutex_);
+  load_ = nullptr;
+}
+
+std::shared_ptr<const Configuration> LiveView::chosen() {
+  const std::lock_guard lock(mutex_);
+  auto chosen = std::exchange(chosen_, nullptr);
+  if (chosen) {
+    ++seen_.taken_over;
+    seen_.refusal.clear();
+  }
+  return chosen;
+}
+
+VisionChanges LiveView::changes() const {
+  const std::lock_guard lock(mutex_);
+  return changes_;
+}
+
+void LiveView::told(const ConfigurationWatch::News& news) {
+  const std::lock_guard lock(mutex_);
+  seen_.taken_over += news.configuration != nullptr;
+  seen_.refusal = news.refusal;
+}
+
+void LiveView::draw_pictures() {
+  for (;;) {
+    Snapshot snapshot;
+    {
+      std::unique_lock lock(mutex_);
+      drawing_ = false;
+      wanted_.wait(lock, [&] { return ending_ || snapshot_.has_value(); });
+      if (ending_) return;
+      snapshot = std::move(*snapshot_);
+      snapshot_.reset();
+      drawing_ = true;
+    }
+    OverlayOptions options;
+    const Optics* const optics = snapshot.configuration->vision.optics();
+    options.camera = optics != nullptr ? &optics->camera : nullptr;
+    options.surface = &snapshot.surface;
+    const Picture picture = draw_overlay(snapshot.frame.view, snapshot.frame.range, snapshot.scene, options);
+    constexpr int quality = 80;
+    server_.publish(
+        kPicture,
+        std::make_shared<const std::string>(encode_jpeg(picture.pixels, picture.width, picture.height, quality)),
+        WebServer::Message::binary);
+  }
+}
+
+std::string LiveView::state_json() const {
+  const WebCounts counts = server_.counts();
+  const std::lock_guard lock(mutex_);
+  return json({{"version", TASSILO_VERSION},
+               {"robot", robot_file_},
+               {"source", {{"name", seen_.source_name}, {"description", seen_.source_description}}},
+               {"frame", seen_.frame},
+               {"t", seen_.t},
+               {"rate_hz", seen_.rate_hz},
+               {"frames", seen_.frames},
+               {"dropped", seen_.dropped},
+               {"configuration", {{"taken_over", seen_.taken_over}, {"refusal", seen_.refusal}}},
+               {"web", {{"clients", counts.clients}, {"sent", counts.sent}, {"dropped", counts.dropped}}},
+               {"ended", false}})
+      .dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+WebResponse LiveView::answer(const WebRequest& request) {
+  const bool reads = request.method == "GET" || request.method == "HEAD";
+  if (request.path == "/api/state")
+    return reads ? WebResponse{200, "application/json", state_json()} : refusal(405, "the state can be read only");
+  if (request.path == "/api/stages") {
+    if (request.method == "PUT") return change_stages(request.body);
+    if (!reads) return refusal(405, "stages are read by GET and changed by PUT");
+    const std::lock_guard lock(mutex_);
+    if (!now_) return refusal(503, "the source is not open yet");
+    return {200, "application/json", stages_json(*now_, changes_)};
+  }
+  if (request.path == "/")
+    return refusal(404, "the pages are not installed; /api/state, /api/stages, /ws/scene and /ws/picture are here");
+  return refusal(404, "there is nothing at " + request.path);
+}
+
+WebResponse LiveView::change_stages(const std::string& body) {
+  const std::lock_guard loading(loading_);
+  VisionChanges changes = this->changes();
+  Load load;
+  {
+    const std::lock_guard lock(mutex_);
+    load = load_;
+  }
+  if (!load) return refusal(503, "the source is not open yet");
+  try {
+    for (const auto& [key, value] : parse_json(body, "request").any_map().entries()) {
+      if (value.is_null())
+        changes.erase(key);
+      else {
+        Setting setting = value.setting();
+        setting.name = "vision." + key;
+        // A name of an alternative is a text in JSON, and none in the robot file.
+        setting.quoted = false;
+        changes.insert_or_assign(key, std::move(setting));
+      }
+    }
+    auto configuration = load(changes);
+    std::string json = stages_json(*configuration, changes);
+    const std::lock_guard lock(mutex_);
+    changes_ = std::move(changes);
+    now_ = chosen_ = std::move(configuration);
+    return {200, "application/json", std::move(json)};
+  } catch (const Error& error) {
+    return refusal(400, error.what());
+  }
+}
+
+}  // namespace tassilo

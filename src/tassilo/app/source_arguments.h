@@ -1,0 +1,32 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+
+#include "tassilo/source/camera.h"
+#include "tassilo/source/frame_source.h"
+
+namespace tassilo {
+
+/// What the command line says of a source, as words, and what they mean.
+struct SourceArguments {
+  std::string source;
+  std::string format, size, range;
+  double fps = 0;
+  std::string camera_format, exposure, gain, white_balance;
+
+  std::optional<RawFormat> raw;         ///< Of raw frames.
+  std::optional<CameraOptions> camera;  ///< Of a camera.
+
+  /// Adds the options, which all go together.
+  void add_to(CLI::App& command);
+  /// Fills `raw` or `camera`. Throws CLI::ValidationError: what it refuses is wrong usage.
+  void understand();
+};
+
+/// "camera: 3 lost by the driver, 12 replaced by newer ones, 1 broken; stalled 1 time, unplugged 2 times" with an end
+/// of line, without what is zero; empty when all is.
+std::string camera_summary(const CameraCounts& counts);
+
+}  // namespace tassilo

@@ -1,0 +1,213 @@
+#!/usr/bin/env python3
+"""`tassilo serve` as browsers and programs use it: state, stages, scenes and pictures, and those who may not.
+
+usage: tests/serve_test.py PROGRAM [unittest arguments]
+"""
+import base64
+import hashlib
+import http.client
+import json
+import os
+import re
+import shutil
+import signal
+import socket
+import struct
+import subprocess
+import time
+import unittest
+
+from program import DATA, ROOT, TIMEOUT_S, ProgramTest, main, without_timing
+
+try:
+    import jsonschema
+except ImportError:
+    jsonschema = None
+
+RECORDING = DATA / "d01_approach"
+TOKEN = "0123456789abcdefABCDEF"
+
+
+class Channel:
+    """A WebSocket by hand: just enough of RFC 6455 to listen."""
+
+    def __init__(self, port, name, headers=()):
+        self.socket = socket.create_connection(("127.0.0.1", port), timeout=TIMEOUT_S)
+        self.stream = self.socket.makefile("rb")
+        key = base64.b64encode(os.urandom(16)).decode()
+        lines = [f"GET /ws/{name} HTTP/1.1", f"Host: 127.0.0.1:{port}", "Connection: Upgrade", "Upgrade: websocket", "Sec-WebSocket-Version: 13",
+                 f"Sec-WebSocket-Key: {key}", *headers]
+        self.socket.sendall(("\r\n".join(lines) + "\r\n\r\n").encode())
+        self.status = int(self.stream.readline().split()[1])
+        answer = {}
+        while (line := self.stream.readline().strip()):
+            name, _, value = line.decode().partition(":")
+            answer[name.lower()] = value.strip()
+        if self.status == 101:
+            accept = base64.b64encode(hashlib.sha1((key + "258EAFA5-E914-47DA-95CA-C5AB0DC85B11").encode()).digest()).decode()
+            assert answer["sec-websocket-accept"] == accept
+
+    def receive(self):
+        """(is text, bytes) of the next message; pings are passed over."""
+        while True:
+            first, second = self.stream.read(2)
+            length = second & 127
+            if length == 126:
+                length, = struct.unpack(">H", self.stream.read(2))
+            elif length == 127:
+                length, = struct.unpack(">Q", self.stream.read(8))
+            data = self.stream.read(length)
+            if first & 15 in (1, 2):
+                return first & 15 == 1, data
+
+    def close(self):
+        self.stream.close()
+        self.socket.close()
+
+
+class Serve(ProgramTest):
+    def serve(self, *arguments):
+        """Starts the program on a port of its choice and waits until frames are seen."""
+        self.process = self.start("serve", "--robot", "robot.yaml", "--colors", "div.yaml", "--source", RECORDING / "video.mkv", "--odometry",
+                                  RECORDING / "odometry.jsonl", "--port", "0", *arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.addCleanup(self.stop)
+        self.said = self.process.stdout.readline().decode()
+        self.port = int(re.search(r"http://[\d.]+:(\d+)/", self.said)[1])
+        return self.port
+
+    def stop(self):
+        if self.process.poll() is None:
+            self.process.kill()
+        self.process.communicate()
+
+    def ask(self, method, path, body=None, headers=None):
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=TIMEOUT_S)
+        connection.request(method, path, body, headers or {})
+        answer = connection.getresponse()
+        data = answer.read()
+        connection.close()
+        return answer.status, data, answer
+
+    def get(self, path):
+        status, data, _ = self.ask("GET", path)
+        self.assertEqual(status, 200, data)
+        return json.loads(data)
+
+    def until(self, holds):
+        end = time.monotonic() + TIMEOUT_S
+        while time.monotonic() < end:
+            if (value := holds()):
+                return value
+            time.sleep(.02)
+        self.fail("waited in vain")
+
+    def setUp(self):
+        shutil.copy(RECORDING / "camera.yaml", self.folder / "camera.yaml")
+        self.write("robot.yaml", "{camera: camera.yaml, field: msl98}\n")
+
+    def test_shows_what_it_sees(self):
+        port = self.serve()
+        scenes, pictures = Channel(port, "scene"), Channel(port, "picture")
+        is_text, data = scenes.receive()
+        self.assertTrue(is_text)
+        scene = json.loads(data)
+        if jsonschema is not None:
+            jsonschema.Draft202012Validator(json.loads((ROOT / "schema/scene.schema.json").read_text())).validate(scene)
+        self.assertTrue(scene["balls"])
+        self.assertEqual(scene["pose"]["kind"], "model")
+        is_text, picture = pictures.receive()
+        self.assertFalse(is_text)
+        self.assertEqual((picture[:2], picture[-2:]), (b"\xff\xd8", b"\xff\xd9"))
+        # The picture is whole: another program decodes it.
+        decoded = subprocess.run(["ffmpeg", "-loglevel", "error", "-f", "mjpeg", "-i", "-", "-f", "rawvideo", "-pix_fmt", "gray", "-"], input=picture,
+                                 stdout=subprocess.PIPE, timeout=TIMEOUT_S, check=True).stdout
+        self.assertGreater(len(decoded), 768 * 344)
+        # A file plays in real time, and again and again.
+        frames = [json.loads(scenes.receive()[1])["frame"] for _ in range(60)]
+        self.assertIn(0, frames)
+        state = self.get("/api/state")
+        self.assertGreaterEqual(state["frames"], 60)
+        self.assertLess(abs(state["rate_hz"] - 20), 10)
+        self.assertEqual(state["dropped"], 0)
+        self.process.send_signal(signal.SIGINT)
+        out, err = self.process.communicate(timeout=TIMEOUT_S)
+        self.assertEqual(self.process.returncode, 0, err)
+        self.assertIn(b"ended by a signal", out)
+        for channel in (scenes, pictures):
+            channel.close()
+
+    def test_scenes_are_those_of_a_run_whoever_listens(self):
+        self.succeeds("run", "--robot", "robot.yaml", "--colors", "div.yaml", "--source", RECORDING / "video.mkv", "--odometry",
+                      RECORDING / "odometry.jsonl", "--output", "run.jsonl", "--quiet")
+        port = self.serve("--output", "serve.jsonl")
+        listeners = [Channel(port, name) for name in ("scene", "scene", "picture", "picture")]  # four clients, two of whom take nothing
+        self.until(lambda: self.process.poll() is not None)
+        for listener in listeners:
+            listener.close()
+        self.assertEqual([without_timing(scene) for scene in self.scenes("serve.jsonl")],
+                         [without_timing(scene) for scene in self.scenes("run.jsonl")])
+
+    def test_stages_are_exchanged_while_it_runs(self):
+        port = self.serve()
+        scenes = Channel(port, "scene")
+        scenes.receive()
+        stages = {stage["key"]: stage for stage in self.get("/api/stages")}
+        chosen = {key: [a["name"] for a in stage["alternatives"] if a["chosen"]] for key, stage in stages.items()}
+        self.assertEqual(chosen["localization"], ["model"])
+        status, data, _ = self.ask("PUT", "/api/stages", json.dumps({"localization": "boundary", "ball_max": 3}))
+        self.assertEqual(status, 200, data)
+        stages = {stage["key"]: stage for stage in json.loads(data)}
+        self.assertTrue(stages["localization"]["changed"])
+        option = next(o for o in stages["balls"]["options"] if o["key"] == "ball_max")
+        self.assertEqual((option["value"], option["changed"], option["default"]), (3, True, 5))
+        kinds = ("two_lines", "one_line", "predicted")
+        self.until(lambda: json.loads(scenes.receive()[1])["pose"]["kind"] in kinds)
+        for body, says in (({"ball_max": 300}, "must be >= 1"), ({"localization": "magic"}, "model or boundary"), ({"ball_mx": 3}, "did you mean"),
+                           ("[1", "JSON"), ("[1]", "map"), ({"ball_max": [1]}, "ball_max")):
+            status, data, _ = self.ask("PUT", "/api/stages", body if isinstance(body, str) else json.dumps(body))
+            self.assertEqual(status, 400, data)
+            self.assertIn(says, data.decode())
+        self.assertIn(json.loads(scenes.receive()[1])["pose"]["kind"], kinds, "the former one goes on")
+        # What was chosen here outlasts a change of the file; null gives it back to the file.
+        self.write("robot.yaml", "{camera: camera.yaml, field: msl98, vision: {ball_max: 7}}\n")
+        self.until(lambda: self.get("/api/state")["configuration"]["taken_over"] >= 2)
+        values = lambda: {o["key"]: o["value"] for stage in self.get("/api/stages") for o in stage["options"]}
+        self.assertEqual(values()["ball_max"], 3)
+        self.ask("PUT", "/api/stages", json.dumps({"ball_max": None, "localization": None}))
+        self.assertEqual(values()["ball_max"], 7)
+        self.until(lambda: json.loads(scenes.receive()[1])["pose"]["kind"] == "model")
+        scenes.close()
+
+    def test_keeps_others_out(self):
+        port = self.serve("--token", TOKEN)
+        self.assertEqual(self.ask("GET", "/api/state")[0], 401)
+        self.assertEqual(Channel(port, "scene").status, 401)
+        status, _, answer = self.ask("GET", f"/?token={TOKEN}")
+        self.assertEqual((status, answer.getheader("Location")), (303, "/"))
+        cookie = answer.getheader("Set-Cookie")
+        self.assertIn("HttpOnly", cookie)
+        headers = {"Cookie": cookie.split(";")[0]}
+        self.assertEqual(self.ask("GET", "/api/state", headers=headers)[0], 200)
+        self.assertEqual(self.ask("PUT", "/api/stages", "{}", headers | {"Origin": "http://evil.example"})[0], 403)
+        self.assertEqual(self.ask("PUT", "/api/stages", "{}", headers | {"Host": "evil.example"})[0], 403)
+        self.assertEqual(self.ask("PUT", "/api/stages", "x" * 2_000_000, headers)[0], 413)
+        self.assertEqual(self.ask("DELETE", "/api/stages", headers=headers)[0], 405)
+        self.assertEqual(self.ask("GET", "/api/../../robot.yaml", headers=headers)[0], 404)
+        self.assertEqual(Channel(port, "scene", [f"Cookie: {headers['Cookie']}"]).status, 101)
+
+    def test_beyond_this_machine_a_token_is_made(self):
+        self.serve("--address", "0.0.0.0")
+        self.assertRegex(self.said, r"/\?token=[0-9a-f]{32} ")
+        self.assertEqual(self.ask("GET", "/api/state")[0], 401)
+
+    def test_errors_are_told_before_it_runs(self):
+        port = self.serve()
+        self.fails("serve", "--robot", "robot.yaml", "--colors", "div.yaml", "--source", RECORDING / "video.mkv", "--port", port,
+                   says=(str(port), "cannot listen"))
+        self.fails("serve", "--robot", "robot.yaml", "--colors", "div.yaml", "--source", RECORDING / "video.mkv", "--address", "robot",
+                   says=("robot", "must be an IP address"))
+        self.refuses("serve", "--robot", "robot.yaml", "--source", "x.mkv", "--token", "short", says="16 or more")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,94 @@
+import { useEffect, useState } from "preact/hooks";
+import { LiveView } from "./live/live_view";
+import { changed_keys } from "./stages/model";
+import { StagesPage } from "./stages/stages_page";
+import { useValue } from "./link/observable";
+import type { Session } from "./session";
+
+const views = [
+  { id: "live", title: "Live" },
+  { id: "stages", title: "Stages" },
+] as const;
+type View = (typeof views)[number]["id"];
+
+function view_of_address(): View {
+  return views.find((view) => location.hash === `#/${view.id}`)?.id ?? "live";
+}
+
+export function App({ session }: { session: Session }) {
+  const [view, set_view] = useState<View>(view_of_address);
+  useEffect(() => {
+    const follow = (): void => set_view(view_of_address());
+    addEventListener("hashchange", follow);
+    return () => removeEventListener("hashchange", follow);
+  }, []);
+  useEffect(() => {
+    document.title = `${views.find((v) => v.id === view)!.title} · Tassilo`;
+  }, [view]);
+
+  return (
+    <>
+      <header class="bar">
+        <span class="brand">Tassilo</span>
+        <nav aria-label="Views">
+          {views.map(({ id, title }) => (
+            <a key={id} href={`#/${id}`} aria-current={view === id ? "page" : undefined}>
+              {title}
+              {id === "stages" && <ChangedBadge session={session} />}
+            </a>
+          ))}
+        </nav>
+        <ConditionChip session={session} />
+        <FreezeButton session={session} />
+      </header>
+      <Refusal session={session} />
+      <Content session={session} view={view} />
+    </>
+  );
+}
+
+/// What is shown while the connection is lost is from before; it must not look as if it were now.
+function Content({ session, view }: { session: Session; view: View }) {
+  const lost = useValue(session.condition).tone === "bad";
+  return (
+    <main class={lost ? "old" : undefined} data-show="content">
+      {view === "live" ? <LiveView session={session} /> : <StagesPage session={session} />}
+    </main>
+  );
+}
+
+function ChangedBadge({ session }: { session: Session }) {
+  const { stages } = useValue(session.stages.view);
+  const changed = changed_keys(stages ?? []).length;
+  return changed === 0 ? null : <span class="badge" aria-label={`${changed} changed`}>{changed}</span>;
+}
+
+function ConditionChip({ session }: { session: Session }) {
+  const condition = useValue(session.condition);
+  return (
+    <span class={`chip ${condition.tone}`} role="status" data-show="condition">
+      <span class="dot" aria-hidden="true" />
+      {condition.text}
+      {condition.text.startsWith("connection lost") && (
+        <button type="button" class="plain" onClick={() => session.retry()}>try now</button>
+      )}
+    </span>
+  );
+}
+
+function FreezeButton({ session }: { session: Session }) {
+  const frozen = useValue(session.live.frozen);
+  return (
+    <button type="button" class="freeze" aria-pressed={frozen} aria-keyshortcuts="Space" title="or the space key"
+            onClick={() => session.toggle_freeze()}>
+      {frozen ? "Continue" : "Freeze"}
+    </button>
+  );
+}
+
+/// A changed configuration file that was refused is told on every view: the robot goes on with the one before.
+function Refusal({ session }: { session: Session }) {
+  const state = useValue(session.server);
+  const refusal = state?.configuration.refusal;
+  return refusal ? <p class="notice" role="alert">configuration refused, the one before goes on: {refusal}</p> : null;
+}

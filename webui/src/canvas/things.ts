@@ -1,0 +1,102 @@
+import { meters } from "../format";
+import type { OnFloor, Point, Robot, Scene, Team, Track } from "../scene";
+import { covariance_ellipse } from "./ellipse";
+import type { Palette, Pen } from "./pen";
+
+// What is drawn alike in the robot's frame and on the field; pens bring the frame along.
+
+/// Standard deviations that ellipses of uncertainty show.
+export const shown_sigmas = 2;
+
+/// Of balls, where no field file is at hand, [m].
+const ball_radius = 0.105;
+const robot_radius = 0.22;
+
+export function team_color(team: Team, palette: Palette): string {
+  return team === "unknown" ? palette.unknown : palette[team];
+}
+
+export function place_of(thing: { x: number | null; y: number | null }): Point | null {
+  return thing.x === null || thing.y === null ? null : [thing.x, thing.y];
+}
+
+/// The bounds on the distance, along the line of sight.
+function whisker(pen: Pen, thing: OnFloor, color: string): void {
+  if (thing.near === null || thing.far === null || thing.bearing === null) return;
+  const direction: Point = [Math.cos(thing.bearing), Math.sin(thing.bearing)];
+  const at = (distance: number): Point => [distance * direction[0], distance * direction[1]];
+  pen.line([at(thing.near), at(thing.far)], color, 1.5);
+}
+
+export function draw_lines(pen: Pen, scene: Scene): void {
+  for (const line of scene.lines) {
+    if (line.kind === "circle") pen.circle(line.center, line.radius, pen.palette.line, 2);
+    else if (line.p && line.q) pen.line([line.p, line.q], line.kind === "boundary" ? pen.palette.boundary : pen.palette.line, 2.5);
+  }
+}
+
+export function draw_goals(pen: Pen, scene: Scene, labels: boolean): void {
+  for (const goal of scene.goals) {
+    const color = pen.palette[goal.color];
+    const posts = goal.posts.map((post): Point => [post.x, post.y]);
+    if (posts.length === 2) pen.line(posts, color, 4);
+    for (const post of posts) pen.disc(post, 0.06, 4, color);
+    const middle = place_of(goal) ?? posts[0];
+    if (labels && middle) pen.label(`${goal.color} goal`, middle, color, [8, -12]);
+  }
+}
+
+export function draw_robots(pen: Pen, scene: Scene, labels: boolean): void {
+  for (const robot of scene.robots) draw_robot(pen, robot, labels);
+}
+
+function draw_robot(pen: Pen, robot: Robot, labels: boolean): void {
+  const foot = place_of(robot);
+  const center = robot.center ?? foot;
+  if (foot === null || center === null) return;
+  const color = team_color(robot.team, pen.palette);
+  if (robot.cov) pen.ellipse(covariance_ellipse(foot, robot.cov, shown_sigmas), color, 0.12);
+  whisker(pen, robot, color);
+  pen.ring(center, robot.width === null ? robot_radius : robot.width / 2, 5, color, 2);
+  if (labels) pen.label(meters(robot.distance), center, color, [12, 0]);
+}
+
+export function draw_balls(pen: Pen, scene: Scene, labels: boolean): void {
+  // The best one last, so that it lies on top.
+  for (let i = scene.balls.length - 1; i >= 0; --i) {
+    const ball = scene.balls[i]!;
+    const at = place_of(ball);
+    if (at === null) continue;
+    if (ball.cov) pen.ellipse(covariance_ellipse(at, ball.cov, shown_sigmas), pen.palette.ball, 0.25);
+    whisker(pen, ball, pen.palette.ball);
+    if (i === 0) pen.disc(at, ball_radius, 5, pen.palette.ball);
+    else pen.ring(at, ball_radius, 5, pen.palette.ball, 1.5, [3, 3]);
+    if (labels && i === 0) pen.label(meters(ball.distance), at, pen.palette.ball, [11, 0]);
+  }
+}
+
+/// A cross where the object is thought to be, dashed ring while it is not seen, and its way of the next second.
+export function draw_tracks(pen: Pen, scene: Scene): void {
+  for (const track of scene.tracks) draw_track(pen, track);
+}
+
+function draw_track(pen: Pen, track: Track): void {
+  const color = track.kind === "ball" ? pen.palette.ball : team_color(track.team, pen.palette);
+  const at: Point = [track.x, track.y];
+  if (track.age > 0) {
+    pen.ellipse(covariance_ellipse(at, track.cov, shown_sigmas, 4), color, 0.08);
+    pen.ring(at, track.kind === "ball" ? ball_radius : robot_radius, 5, color, 1.5, [2, 4]);
+  }
+  if (is_moving(track)) pen.arrow(at, [track.x + track.vx, track.y + track.vy], color);
+}
+
+/// A velocity within its own uncertainty points anywhere; an arrow would claim a direction that nobody knows.
+export function is_moving(track: Track): boolean {
+  const variance = (track.cov[10] ?? Infinity) + (track.cov[15] ?? Infinity);
+  return Math.hypot(track.vx, track.vy) > shown_sigmas * Math.sqrt(variance);
+}
+
+/// The robot itself: an arrowhead at its origin, forward along +x.
+export function draw_self(pen: Pen, length: number): void {
+  pen.area([[length, 0], [-0.7 * length, 0.62 * length], [-0.35 * length, 0], [-0.7 * length, -0.62 * length]], pen.palette.self);
+}

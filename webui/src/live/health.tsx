@@ -1,0 +1,30 @@
+import { count, fixed } from "../format";
+import { useValue } from "../link/observable";
+import type { Session } from "../session";
+
+/// Whether what is seen here is all there is, and how late.
+export function Health({ session }: { session: Session }) {
+  const server = useValue(session.server);
+  useValue(session.live.read);   // what this page skipped is counted with the scenes
+  if (server === null) return null;
+  return (
+    <section>
+      <h2>Health</h2>
+      <dl class="pairs health" data-show="health">
+        <Fact name="source" value={server.source.name} title={server.source.description} />
+        <Fact name="robot" value={server.robot} />
+        <Fact name="frames" value={`${count(server.frames)}, ${count(server.dropped)} dropped`} bad={server.dropped > 0.01 * server.frames} />
+        {server.latency_ms != null && <Fact name="latency" value={`${fixed(server.latency_ms, 0)} ms`} />}
+        <Fact name="viewers" value={`${server.web.clients} connections`} />
+        <Fact name="messages" value={`${count(server.web.sent)}, ${count(server.web.dropped)} passed over`} />
+        <Fact name="this page" value={`${count(session.skipped)} skipped`} />
+        <Fact name="configuration" value={`taken over ${server.configuration.taken_over}×`} show="taken-over" />
+        <Fact name="version" value={server.version} />
+      </dl>
+    </section>
+  );
+}
+
+function Fact({ name, value, title, bad, show }: { name: string; value: string; title?: string; bad?: boolean; show?: string }) {
+  return <div><dt>{name}</dt><dd title={title} class={bad ? "bad" : undefined} data-show={show}>{value}</dd></div>;
+}

@@ -1,0 +1,112 @@
+import { Channel, browser_world } from "./link/channel";
+import { type Api, server_api, type ServerState } from "./link/api";
+import { type Condition, condition_of } from "./link/condition";
+import { Live } from "./link/live";
+import { NewestDecoder } from "./link/newest";
+import { Observable } from "./link/observable";
+import { StagesModel } from "./stages/model";
+
+/// Everything between this page and the server, for as long as the page is open.
+export class Session {
+  readonly live = new Live();
+  readonly picture = new Observable<ImageBitmap | null>(null);
+  readonly server = new Observable<ServerState | null>(null);
+  readonly condition = new Observable<Condition>({ tone: "warning", text: "connecting" });
+  readonly stages: StagesModel;
+  private trouble = "";
+  private decoded: ImageBitmap | null = null;
+  private readonly decoder = new NewestDecoder<Blob, ImageBitmap>((blob) => createImageBitmap(blob), (bitmap) => {
+    this.decoded?.close();
+    this.decoded = bitmap;
+  });
+  private readonly scene_channel: Channel;
+  private readonly picture_channel: Channel;
+
+  constructor(private readonly api: Api = server_api) {
+    this.stages = new StagesModel(api);
+    this.scene_channel = new Channel(browser_world("/ws/scene"), (data) => this.live.message(String(data), performance.now()), () => this.judge());
+    this.picture_channel = new Channel(browser_world("/ws/picture"), (data) => {
+      if (data instanceof Blob) this.decoder.put(data);
+    }, () => {});
+  }
+
+  start(): void {
+    this.scene_channel.start();
+    this.picture_channel.start();
+    void this.stages.refresh();
+    const on_screen = (now: number): void => {
+      this.live.tick(now);
+      this.show_picture();
+      requestAnimationFrame(on_screen);
+    };
+    requestAnimationFrame(on_screen);
+    const ask = async (): Promise<void> => {
+      await this.ask_state();
+      setTimeout(ask, 1000);
+    };
+    void ask();
+    setInterval(() => this.judge(), 250);
+    addEventListener("online", () => this.retry());
+    // Nobody looks: the radio link has better things to carry, and the server need not draw.
+    document.addEventListener("visibilitychange", () => {
+      if (document.hidden) this.picture_channel.stop();
+      else this.picture_channel.start();
+    });
+  }
+
+  retry(): void {
+    this.scene_channel.retry();
+    this.picture_channel.retry();
+  }
+
+  toggle_freeze(): void {
+    if (this.live.frozen.value) this.live.go_on();
+    else this.live.freeze();
+    this.judge();
+  }
+
+  /// Pictures that this page was too slow for, and scenes.
+  get skipped(): number {
+    return this.decoder.dropped + this.live.dropped;
+  }
+
+  private show_picture(): void {
+    if (this.live.frozen.value || this.decoded === null) return;
+    const before = this.picture.value;
+    this.picture.set(this.decoded);
+    this.decoded = null;
+    before?.close();
+  }
+
+  private async ask_state(): Promise<void> {
+    try {
+      const state = await this.api.state();
+      const before = this.server.value;
+      this.trouble = "";
+      this.server.set(state);
+      // Somebody else, or the robot file, may have changed the stages; a server that was started anew has its own.
+      if (before !== null && (before.configuration.taken_over !== state.configuration.taken_over || state.frames < before.frames)) {
+        void this.stages.refresh();
+      } else if (this.stages.view.value.stages === null) {
+        void this.stages.refresh();
+      }
+    } catch (error) {
+      this.trouble = error instanceof Error ? error.message : String(error);
+    }
+    this.judge();
+  }
+
+  private judge(): void {
+    const now = performance.now();
+    const condition = condition_of({
+      scene: this.scene_channel.state,
+      frozen: this.live.frozen.value,
+      ended: this.server.value?.ended ?? false,
+      trouble: this.trouble,
+      silence_ms: this.live.silence(now),
+      now,
+    });
+    const shown = this.condition.value;
+    if (shown.text !== condition.text || shown.tone !== condition.tone) this.condition.set(condition);
+  }
+}
