@@ -22,6 +22,7 @@ inline void add_plugin_option(CLI::App& verb, std::vector<std::string>& files) {
 Command add_run(CLI::App& program);
 Command add_serve(CLI::App& program);
 Command add_train_colors(CLI::App& train);
+Command add_calibrate(CLI::App& program);
 Command add_eval(CLI::App& program);
 Command add_compare(CLI::App& program);
 Command add_info(CLI::App& program);

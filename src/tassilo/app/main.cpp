@@ -54,6 +54,7 @@ int main(int argc, char** argv) {
   auto* train = program.add_subcommand("train", "train what the vision needs");
   train->require_subcommand(1);
   const Command train_colors = add_train_colors(*train);
+  const Command calibrate = add_calibrate(program);
   const Command eval = add_eval(program);
   const Command compare = add_compare(program);
   const Command info = add_info(program);
@@ -61,6 +62,7 @@ int main(int argc, char** argv) {
     if (program.got_subcommand("run")) return run();
     if (program.got_subcommand("serve")) return serve();
     if (program.got_subcommand("train")) return train_colors();
+    if (program.got_subcommand("calibrate")) return calibrate();
     if (program.got_subcommand("eval")) return eval();
     if (program.got_subcommand("compare")) return compare();
     return info();
