@@ -24,9 +24,12 @@ const test::Recording& recording(int index) {
   return loaded.at(index);
 }
 
-void frame_to_scene(benchmark::State& state) {
+/// With stages chosen as below `vision:` in a robot file.
+void frame_to_scene(benchmark::State& state, const std::map<std::string, std::string, std::less<>>& stages_chosen) {
   const test::Recording& r = recording(static_cast<int>(state.range(0)));
-  const Vision vision(r.setup);
+  VisionSetup setup = r.setup;
+  setup.options.stages = stages_chosen;
+  const Vision vision(setup);
   VisionWorkspace workspace;
   std::map<std::string, std::vector<double>> stages;
   measure(state, r.frames.size(), [&](std::size_t k) {
@@ -42,7 +45,11 @@ void frame_to_scene(benchmark::State& state) {
 
 void register_benchmarks() {
   add_yardsticks({0, 1});  // these recordings
-  add("scene/ours", {0, 1}, frame_to_scene);
+  add("scene/ours", {0, 1}, [](benchmark::State& state) { frame_to_scene(state, {}); });
+  for (const char* way : {"skeleton", "subpixel"})
+    add("scene/boundary_" + std::string(way), {0, 1}, [way](benchmark::State& state) {
+      frame_to_scene(state, {{"localization", "boundary"}, {"field_boundary", way}});
+    });
 }
 
 }  // namespace tassilo::bench

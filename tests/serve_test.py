@@ -117,6 +117,7 @@ class Serve(ProgramTest):
         self.assertEqual(scene["pose"]["kind"], "model")
         is_text, picture = pictures.receive()
         self.assertFalse(is_text)
+        self.assertRegex(picture[:2000], rb"frame \d+")
         self.assertEqual((picture[:2], picture[-2:]), (b"\xff\xd8", b"\xff\xd9"))
         # The picture is whole: another program decodes it.
         decoded = subprocess.run(["ffmpeg", "-loglevel", "error", "-f", "mjpeg", "-i", "-", "-f", "rawvideo", "-pix_fmt", "gray", "-"], input=picture,
@@ -129,6 +130,8 @@ class Serve(ProgramTest):
         self.assertGreaterEqual(state["frames"], 60)
         self.assertLess(abs(state["rate_hz"] - 20), 10)
         self.assertEqual(state["dropped"], 0)
+        self.assertEqual(state["field"]["length"], 8.22)
+        self.assertEqual([goal["color"] for goal in state["field"]["goals"]], ["blue", "yellow"])
         self.process.send_signal(signal.SIGINT)
         out, err = self.process.communicate(timeout=TIMEOUT_S)
         self.assertEqual(self.process.returncode, 0, err)
@@ -173,7 +176,8 @@ class Serve(ProgramTest):
         self.until(lambda: self.get("/api/state")["configuration"]["taken_over"] >= 2)
         values = lambda: {o["key"]: o["value"] for stage in self.get("/api/stages") for o in stage["options"]}
         self.assertEqual(values()["ball_max"], 3)
-        self.ask("PUT", "/api/stages", json.dumps({"ball_max": None, "localization": None}))
+        self.ask("PUT", "/api/stages", json.dumps({"ball_max": None, "localization": "model"}))
+        self.assertFalse(any(stage["changed"] for stage in self.get("/api/stages")), "back to what the file says is no change")
         self.assertEqual(values()["ball_max"], 7)
         self.until(lambda: json.loads(scenes.receive()[1])["pose"]["kind"] == "model")
         scenes.close()
@@ -190,7 +194,8 @@ class Serve(ProgramTest):
         self.assertEqual(self.ask("GET", "/api/state", headers=headers)[0], 200)
         self.assertEqual(self.ask("PUT", "/api/stages", "{}", headers | {"Origin": "http://evil.example"})[0], 403)
         self.assertEqual(self.ask("PUT", "/api/stages", "{}", headers | {"Host": "evil.example"})[0], 403)
-        self.assertEqual(self.ask("PUT", "/api/stages", "x" * 2_000_000, headers)[0], 413)
+        # What is too long is refused by its announced length, before any of it came.
+        self.assertEqual(self.ask("PUT", "/api/stages", headers=headers | {"Content-Length": "2000000"})[0], 413)
         self.assertEqual(self.ask("DELETE", "/api/stages", headers=headers)[0], 405)
         self.assertEqual(self.ask("GET", "/api/../../robot.yaml", headers=headers)[0], 404)
         self.assertEqual(Channel(port, "scene", [f"Cookie: {headers['Cookie']}"]).status, 101)

@@ -1,7 +1,15 @@
 import { defineConfig } from "vitest/config";
 
-// Where `npm run dev` finds the requests and channels: `npm run mock`, or `tassilo serve` with TASSILO_SERVER set.
-const server = process.env["TASSILO_SERVER"] ?? "http://127.0.0.1:8081";
+// Where `npm run dev` finds the requests and channels: `npm run mock`, or TASSILO_SERVER, the address that `tassilo serve` prints.
+const address = new URL(process.env["TASSILO_SERVER"] ?? "http://127.0.0.1:8081");
+const token = address.searchParams.get("token");
+const proxy = {
+  target: address.origin,
+  changeOrigin: true,
+  ws: true,
+  // The server refuses requests from pages that are not its own, which those of the development server are not.
+  headers: { origin: address.origin, ...(token === null ? {} : { authorization: `Bearer ${token}` }) },
+};
 
 export default defineConfig({
   base: "./",
@@ -15,10 +23,7 @@ export default defineConfig({
   },
   server: {
     host: "127.0.0.1",
-    proxy: {
-      "/api": { target: server, changeOrigin: true },
-      "/ws": { target: server, changeOrigin: true, ws: true },
-    },
+    proxy: { "/api": proxy, "/ws/": proxy },
   },
   test: { include: ["src/**/*.test.ts"], environment: "node" },
 });

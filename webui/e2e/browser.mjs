@@ -206,6 +206,8 @@ async function main(url, browser, screenshots) {
     await page.keyboard.press("Space");
     await page.getByRole("button", { name: "Continue" }).waitFor();
     const scene = await compare_with_scene(page, scenes);
+    const frame_of_picture = await page.locator('[data-show="picture"]').getAttribute("data-frame");
+    if (frame_of_picture) assert.equal(Number(frame_of_picture), scene.frame, "picture and numbers are of different frames");
     await until("later scenes", () => scenes.last.frame !== scene.frame);
     await new Promise((done) => setTimeout(done, 500));
     assert.equal((await compare_with_scene(page, scenes)).frame, scene.frame, "a frozen page goes on");

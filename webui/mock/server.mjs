@@ -87,7 +87,13 @@ async function body_of(request) {
   return body;
 }
 
+/// The real server refuses pages that are not its own; so a page that only works elsewhere does not work here either.
+function is_own_page({ headers }) {
+  return headers.origin === undefined || headers.origin === `http://${headers.host}`;
+}
+
 async function handle(request, response) {
+  if (!is_own_page(request)) return answer(response, 403, "the request comes from a page elsewhere", "text/plain");
   const { pathname } = new URL(request.url, "http://mock");
   if (pathname === "/api/state" && request.method === "GET") return answer(response, 200, JSON.stringify(server_state()));
   if (pathname === "/api/stages" && request.method === "GET") return answer(response, 200, JSON.stringify(stages));
@@ -127,7 +133,7 @@ const server = createServer((request, response) => handle(request, response).cat
 const sockets = new WebSocketServer({ noServer: true });
 server.on("upgrade", (request, socket, head) => {
   const channel = new URL(request.url, "http://mock").pathname;
-  if (channel !== "/ws/scene" && channel !== "/ws/picture") return socket.destroy();
+  if (!is_own_page(request) || (channel !== "/ws/scene" && channel !== "/ws/picture")) return socket.destroy();
   sockets.handleUpgrade(request, socket, head, (client) => { client.channel = channel; });
 });
 
@@ -143,10 +149,16 @@ function publish(channel, message) {
   }
 }
 
+/// The JPEG with its frame as a comment, which pages freeze it with its scene by.
+function numbered(jpeg, frame) {
+  const text = Buffer.from(`frame ${frame}`);
+  return Buffer.concat([jpeg.subarray(0, 2), Buffer.from([0xff, 0xfe, 0, text.length + 2]), text, jpeg.subarray(2)]);
+}
+
 setInterval(() => {
   ++state.frame;
   publish("/ws/scene", JSON.stringify(scene_now()));
-  publish("/ws/picture", pictures[state.frame % pictures.length]);
+  publish("/ws/picture", numbered(pictures[state.frame % pictures.length], state.frame));
 }, 1000 / rate_hz);
 
 server.listen(Number(options.port), "127.0.0.1", () => console.log(`http://127.0.0.1:${server.address().port}/`));

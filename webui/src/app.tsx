@@ -66,9 +66,11 @@ function ChangedBadge({ session }: { session: Session }) {
 function ConditionChip({ session }: { session: Session }) {
   const condition = useValue(session.condition);
   return (
-    <span class={`chip ${condition.tone}`} role="status" data-show="condition">
+    <span class={`chip ${condition.tone}`}>
       <span class="dot" aria-hidden="true" />
-      {condition.text}
+      <span aria-hidden="true" data-show="condition">{condition.text}</span>
+      {/* Read aloud when it changes, which the seconds to the next try are not worth. */}
+      <span class="unseen" role="status">{condition.text.replace(/\d+ s$/, "some seconds")}</span>
       {condition.text.startsWith("connection lost") && (
         <button type="button" class="plain" onClick={() => session.retry()}>try now</button>
       )}

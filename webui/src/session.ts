@@ -1,23 +1,38 @@
 import { Channel, browser_world } from "./link/channel";
 import { type Api, server_api, type ServerState } from "./link/api";
 import { type Condition, condition_of } from "./link/condition";
+import { frame_of_jpeg } from "./link/jpeg";
 import { Live } from "./link/live";
 import { NewestDecoder } from "./link/newest";
 import { Observable } from "./link/observable";
 import { StagesModel } from "./stages/model";
 
+/// A picture, and the frame it shows where the server says so.
+export interface Picture {
+  readonly bitmap: ImageBitmap;
+  readonly frame: number | null;
+}
+
+/// Comments stand at a JPEG's beginning, [B].
+const jpeg_head = 1024;
+
+async function decode(blob: Blob): Promise<Picture> {
+  const [bitmap, head] = await Promise.all([createImageBitmap(blob), blob.slice(0, jpeg_head).arrayBuffer()]);
+  return { bitmap, frame: frame_of_jpeg(new Uint8Array(head)) };
+}
+
 /// Everything between this page and the server, for as long as the page is open.
 export class Session {
   readonly live = new Live();
-  readonly picture = new Observable<ImageBitmap | null>(null);
+  readonly picture = new Observable<Picture | null>(null);
   readonly server = new Observable<ServerState | null>(null);
   readonly condition = new Observable<Condition>({ tone: "warning", text: "connecting" });
   readonly stages: StagesModel;
   private trouble = "";
-  private decoded: ImageBitmap | null = null;
-  private readonly decoder = new NewestDecoder<Blob, ImageBitmap>((blob) => createImageBitmap(blob), (bitmap) => {
-    this.decoded?.close();
-    this.decoded = bitmap;
+  private decoded: Picture | null = null;
+  private readonly decoder = new NewestDecoder<Blob, Picture>(decode, (picture) => {
+    this.decoded?.bitmap.close();
+    this.decoded = picture;
   });
   private readonly scene_channel: Channel;
   private readonly picture_channel: Channel;
@@ -61,7 +76,7 @@ export class Session {
 
   toggle_freeze(): void {
     if (this.live.frozen.value) this.live.go_on();
-    else this.live.freeze();
+    else this.live.freeze(this.picture.value?.frame ?? null);
     this.judge();
   }
 
@@ -75,7 +90,7 @@ export class Session {
     const before = this.picture.value;
     this.picture.set(this.decoded);
     this.decoded = null;
-    before?.close();
+    before?.bitmap.close();
   }
 
   private async ask_state(): Promise<void> {

@@ -56,6 +56,43 @@ std::string stages_json(const Configuration& configuration, const VisionChanges&
   return stages.dump();
 }
 
+/// With the keys of a field file, as far as a view of the field wants them.
+json field_json(const FieldModel& field) {
+  json areas = json::array(), goals = json::array();
+  for (const FieldModel::Area& area : field.areas) areas.push_back({{"depth", area.depth}, {"width", area.width}});
+  for (const FieldModel::Goal& goal : field.goals)
+    goals.push_back({{"side", goal.side == GoalSide::plus_x ? "+x" : "-x"},
+                     {"color", std::string(to_string(goal.color))},
+                     {"width", goal.width},
+                     {"depth", goal.depth}});
+  return {{"length", field.length},
+          {"width", field.width},
+          {"circle_radius", field.circle_radius},
+          {"halfway_line", field.halfway_line},
+          {"areas", std::move(areas)},
+          {"goals", std::move(goals)}};
+}
+
+/// Without what says the same as the robot file, or as the default where that says nothing.
+VisionChanges really_changed(VisionChanges changes, const RobotSetup& setup) {
+  RobotSetup as_filed = setup;
+  apply_changes(as_filed, {});
+  const auto values = option_values(as_filed.vision.options);
+  const auto filed_stage = [&](const auto& stage) {
+    const auto entry = as_filed.vision.options.stages.find(stage.key);
+    return entry != as_filed.vision.options.stages.end() ? entry->second : stage.alternatives.front().name;
+  };
+  std::erase_if(changes, [&](const auto& change) {
+    const auto& [key, setting] = change;
+    if (const auto value = values.find(key); value != values.end()) return setting.number() == value->second;
+    bool is_same = false;
+    setup.registry.for_each(
+        [&](const auto& stage) { is_same |= stage.key == key && setting.text == filed_stage(stage); });
+    return is_same;
+  });
+  return changes;
+}
+
 WebResponse refusal(int status, const std::string& why) { return {status, "text/plain; charset=utf-8", why + "\n"}; }
 
 }  // namespace
@@ -165,7 +202,8 @@ void LiveView::draw_pictures() {
     constexpr int quality = 80;
     server_.publish(
         kPicture,
-        std::make_shared<const std::string>(encode_jpeg(picture.pixels, picture.width, picture.height, quality)),
+        std::make_shared<const std::string>(encode_jpeg(picture.pixels, picture.width, picture.height, quality,
+                                                        "frame " + std::to_string(snapshot.scene.frame))),
         WebServer::Message::binary);
   }
 }
@@ -173,18 +211,19 @@ void LiveView::draw_pictures() {
 std::string LiveView::state_json() const {
   const WebCounts counts = server_.counts();
   const std::lock_guard lock(mutex_);
-  return json({{"version", TASSILO_VERSION},
-               {"robot", robot_file_},
-               {"source", {{"name", seen_.source_name}, {"description", seen_.source_description}}},
-               {"frame", seen_.frame},
-               {"t", seen_.t},
-               {"rate_hz", seen_.rate_hz},
-               {"frames", seen_.frames},
-               {"dropped", seen_.dropped},
-               {"configuration", {{"taken_over", seen_.taken_over}, {"refusal", seen_.refusal}}},
-               {"web", {{"clients", counts.clients}, {"sent", counts.sent}, {"dropped", counts.dropped}}},
-               {"ended", false}})
-      .dump(-1, ' ', false, json::error_handler_t::replace);
+  json state({{"version", TASSILO_VERSION},
+              {"robot", robot_file_},
+              {"source", {{"name", seen_.source_name}, {"description", seen_.source_description}}},
+              {"frame", seen_.frame},
+              {"t", seen_.t},
+              {"rate_hz", seen_.rate_hz},
+              {"frames", seen_.frames},
+              {"dropped", seen_.dropped},
+              {"configuration", {{"taken_over", seen_.taken_over}, {"refusal", seen_.refusal}}},
+              {"web", {{"clients", counts.clients}, {"sent", counts.sent}, {"dropped", counts.dropped}}},
+              {"ended", false}});
+  if (now_ && now_->vision.optics() != nullptr) state["field"] = field_json(now_->setup.vision.field);
+  return state.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
 WebResponse LiveView::answer(const WebRequest& request) {
@@ -225,6 +264,7 @@ WebResponse LiveView::change_stages(const std::string& body) {
       }
     }
     auto configuration = load(changes);
+    changes = really_changed(std::move(changes), configuration->setup);
     std::string json = stages_json(*configuration, changes);
     const std::lock_guard lock(mutex_);
     changes_ = std::move(changes);

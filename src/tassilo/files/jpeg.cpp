@@ -17,11 +17,14 @@ namespace {
 
 }  // namespace
 
-std::string encode_jpeg(std::span<const std::uint8_t> rgb, int width, int height, int quality) {
+std::string encode_jpeg(std::span<const std::uint8_t> rgb, int width, int height, int quality,
+                        const std::string& comment) {
   expects(width > 0 && height > 0 && width <= JPEG_MAX_DIMENSION && height <= JPEG_MAX_DIMENSION,
           "encode_jpeg: at least one pixel, at most 65500 a side");
   expects(rgb.size() == 3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
           "encode_jpeg: three values a pixel");
+  constexpr std::size_t longest_comment = 65533;
+  expects(comment.size() <= longest_comment, "encode_jpeg: a comment of at most 65533 bytes");
   expects(quality >= 1 && quality <= 100, "encode_jpeg: quality 1..100");
   jpeg_compress_struct encoder;
   jpeg_error_mgr errors;
@@ -39,6 +42,9 @@ std::string encode_jpeg(std::span<const std::uint8_t> rgb, int width, int height
   jpeg_set_quality(&encoder, quality, TRUE);
   encoder.dct_method = JDCT_IFAST;
   jpeg_start_compress(&encoder, TRUE);
+  if (!comment.empty())
+    jpeg_write_marker(&encoder, JPEG_COM, reinterpret_cast<const JOCTET*>(comment.data()),
+                      static_cast<unsigned>(comment.size()));
   while (encoder.next_scanline < encoder.image_height) {
     auto* row = const_cast<std::uint8_t*>(rgb.data() + 3 * static_cast<std::size_t>(encoder.next_scanline) *
                                                            static_cast<std::size_t>(width));

@@ -38,5 +38,10 @@ TEST(EncodeJpeg, BetterIsLarger) {
   EXPECT_LT(encode_jpeg(noise, 64, 64, 30).size(), encode_jpeg(noise, 64, 64, 90).size());
 }
 
+TEST(EncodeJpeg, CarriesAComment) {
+  const std::vector<std::uint8_t> gray(3 * 16, 128);
+  EXPECT_NE(encode_jpeg(gray, 4, 4, 80, "frame 7").find("frame 7"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace tassilo

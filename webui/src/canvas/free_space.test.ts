@@ -43,6 +43,17 @@ describe.each(Array.from({ length: 30 }, (_, seed) => seed))("free space of seed
     });
   });
 
+  test("a sector's corners lie half a sector to the right and to the left of its middle", () => {
+    const corners = free_polygons(space).flatMap((polygon) => polygon.slice(1));
+    space.ranges.flatMap((range, i) => (range === null ? [] : [i])).forEach((sector, n) => {
+      for (const side of [0, 1]) {
+        const [x, y] = corners[2 * n + side]!;
+        const angle = space.angle_min + (sector + side - 0.5) * space.angle_increment;
+        expect(Math.sin(Math.atan2(y - space.origin[1], x - space.origin[0]) - angle)).toBeCloseTo(0, 8);
+      }
+    });
+  });
+
   test("there is a polygon for each row of seen sectors", () => {
     const begins = space.ranges.filter((range, i) => range !== null && (i === 0 || space.ranges[i - 1] === null));
     expect(free_polygons(space).length).toBe(begins.length);

@@ -20,12 +20,15 @@ export function place_of(thing: { x: number | null; y: number | null }): Point |
   return thing.x === null || thing.y === null ? null : [thing.x, thing.y];
 }
 
-/// The bounds on the distance, along the line of sight.
+/// Beyond every view, [m].
+const far_away = 100;
+
+/// The bounds on the distance, along the line of sight; dashed and without an end where there is no upper bound.
 function whisker(pen: Pen, thing: OnFloor, color: string): void {
-  if (thing.near === null || thing.far === null || thing.bearing === null) return;
+  if (thing.near === null || thing.bearing === null) return;
   const direction: Point = [Math.cos(thing.bearing), Math.sin(thing.bearing)];
   const at = (distance: number): Point => [distance * direction[0], distance * direction[1]];
-  pen.line([at(thing.near), at(thing.far)], color, 1.5);
+  pen.line([at(thing.near), at(thing.far ?? far_away)], color, 1.5, thing.far === null ? [3, 5] : []);
 }
 
 export function draw_lines(pen: Pen, scene: Scene): void {

@@ -48,6 +48,23 @@ describe("live", () => {
     expect([live.read.value!.frame, live.drawn.value!.frame]).toEqual([900, 900]);
   });
 
+  test("frozen with a picture, it is the picture's scene, as long as that is known; else the one that was drawn", () => {
+    for (const [picture, expected] of [[40, 40], [38, 38], [41, 41], [23, 23], [5, 40], [99, 40], [null, 40]] as const) {
+      const live = new Live();
+      for (let frame = 0; frame <= 40; ++frame) {
+        live.message(text(frame), 10 * frame);
+        live.tick(10 * frame);
+      }
+      live.message("no scene", 405);
+      live.tick(405);
+      if (picture === 41) live.message(text(41), 410);   // not yet drawn, but its picture was quick
+      live.freeze(picture);
+      live.message(text(50), 500);
+      live.tick(500);
+      expect([live.drawn.value!.frame, live.read.value!.frame]).toEqual([expected, expected]);
+    }
+  });
+
   test("silence is counted from the last message, also while frozen", () => {
     const live = new Live();
     expect(live.silence(5)).toBeNull();

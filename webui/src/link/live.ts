@@ -2,6 +2,9 @@ import type { Scene } from "../scene";
 import { Newest } from "./newest";
 import { Observable } from "./observable";
 
+/// So many scenes are kept to find a picture's own among them.
+const recent_scenes = 20;
+
 /// What the pages show of the scenes: the newest when the screen is ready for it, or none newer than when it was frozen.
 ///
 /// drawn   for canvases: with every picture of the screen, if there is a newer one
@@ -12,6 +15,8 @@ export class Live {
   readonly timing = new Observable<readonly StageTime[]>([]);
   readonly frozen = new Observable(false);
   private readonly waiting = new Newest<string>();
+  /// The last messages, newest last: a picture takes longer than its scene, and is to be frozen with it.
+  private recent: string[] = [];
   private last_message: number | null = null;
   private last_read = -Infinity;
   private smoothing = new SmoothedTimes();
@@ -27,6 +32,9 @@ export class Live {
   message(text: string, now: number): void {
     this.last_message = now;
     this.waiting.put(text);
+    if (this.frozen.value) return;
+    this.recent.push(text);
+    if (this.recent.length > recent_scenes) this.recent.shift();
   }
 
   /// Since the last scene came, [ms]; nothing before the first.
@@ -50,13 +58,29 @@ export class Live {
     if (now - this.last_read >= this.read_interval_ms) this.publish(now);
   }
 
-  freeze(): void {
+  /// picture_frame  of the picture that is shown: its scene is frozen, if it is still known, else the one that is drawn
+  freeze(picture_frame: number | null = null): void {
+    const scene = this.recent_scene(picture_frame);
+    if (scene !== null) this.drawn.set(scene);
     this.publish(this.last_read);
     this.frozen.set(true);
   }
 
   go_on(): void {
     this.frozen.set(false);
+  }
+
+  private recent_scene(frame: number | null): Scene | null {
+    if (frame === null || frame === this.drawn.value?.frame) return null;
+    for (let i = this.recent.length - 1; i >= 0; --i) {
+      try {
+        const scene = JSON.parse(this.recent[i]!) as Scene;
+        if (scene.frame === frame) return scene;
+      } catch {
+        // counted when it came
+      }
+    }
+    return null;
   }
 
   private publish(now: number): void {

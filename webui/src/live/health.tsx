@@ -11,7 +11,7 @@ export function Health({ session }: { session: Session }) {
     <section>
       <h2>Health</h2>
       <dl class="pairs health" data-show="health">
-        <Fact name="source" value={server.source.name} title={server.source.description} />
+        <Fact name="source" value={last_part(server.source.name)} title={`${server.source.name}: ${server.source.description}`} />
         <Fact name="robot" value={server.robot} />
         <Fact name="frames" value={`${count(server.frames)}, ${count(server.dropped)} dropped`} bad={server.dropped > 0.01 * server.frames} />
         {server.latency_ms != null && <Fact name="latency" value={`${fixed(server.latency_ms, 0)} ms`} />}
@@ -23,6 +23,11 @@ export function Health({ session }: { session: Session }) {
       </dl>
     </section>
   );
+}
+
+/// Of a path or an address; there is room for no more, and the rest is told on pointing at it.
+function last_part(name: string): string {
+  return name.split("/").pop() || name;
 }
 
 function Fact({ name, value, title, bad, show }: { name: string; value: string; title?: string; bad?: boolean; show?: string }) {

@@ -1,8 +1,9 @@
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { Observable } from "../link/observable";
+import type { Picture } from "../session";
 
 /// The annotated picture, drawn when the screen is ready for it.
-export function PictureView({ picture }: { picture: Observable<ImageBitmap | null> }) {
+export function PictureView({ picture }: { picture: Observable<Picture | null> }) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const [there, set_there] = useState(picture.value !== null);
 
@@ -10,13 +11,14 @@ export function PictureView({ picture }: { picture: Observable<ImageBitmap | nul
     const element = canvas.current!;
     const context = element.getContext("2d", { alpha: false })!;
     const draw = (): void => {
-      const bitmap = picture.value;
-      if (bitmap === null) return;
+      if (picture.value === null) return;
+      const { bitmap, frame } = picture.value;
       if (element.width !== bitmap.width || element.height !== bitmap.height) {
         element.width = bitmap.width;
         element.height = bitmap.height;
       }
       context.drawImage(bitmap, 0, 0);
+      element.dataset["frame"] = frame === null ? "" : String(frame);
       set_there(true);
     };
     draw();

@@ -1,0 +1,290 @@
+#include "tassilo/app/run.h"
+
+#include <fmt/core.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <thread>
+
+#include "tassilo/app/configuration_watch.h"
+#include "tassilo/app/live_view.h"
+#include "tassilo/app/odometry_input.h"
+#include "tassilo/app/progress.h"
+#include "tassilo/app/run_sinks.h"
+#include "tassilo/app/run_summary.h"
+#include "tassilo/app/written_files.h"
+#include "tassilo/base/error.h"
+
+namespace tassilo {
+namespace {
+
+std::atomic<bool> interrupted = false;
+
+void on_signal(int) { interrupted = true; }
+
+/// Ctrl-C and a friendly kill end the run after the frame at work; a second one ends the program at once.
+void end_cleanly_on_signals() {
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+/// Throws Error when a file that is read would be overwritten.
+void check_paths(const RunArguments& arguments, std::vector<NamedFile> read) {
+  const std::filesystem::path source = arguments.source.source;
+  read.push_back({"--source", arguments.source.source});
+  read.push_back({"--odometry", arguments.odometry});
+  // Pictures are written as NNNN.png: among other pictures one may have this name.
+  const std::string extension = source.extension().string();
+  if (extension == ".png" || extension == ".jpg" || extension == ".jpeg")
+    read.push_back({"folder of --source", source.has_parent_path() ? source.parent_path().string() : "."});
+  check_written_files(read, std::array<NamedFile, 3>{{{"--output", arguments.output},
+                                                      {"--overlay", arguments.overlay},
+                                                      {"--label-maps", arguments.label_maps}}});
+}
+
+/// Bytes without a header open as no video; says what they may be.
+FrameSource open_source_of(const SourceOptions& options) {
+  try {
+    return open_source(options);
+  } catch (const Error& error) {
+    const std::string extension = std::filesystem::path(options.location).extension().string();
+    const bool may_be_raw =
+        options.location == "-" || extension == ".yuv" || extension == ".raw" || extension == ".nv12";
+    if (options.raw || !may_be_raw || interrupted) throw;
+    throw Error(error.what(), "raw frames need --format, --size, --range and --fps");
+  }
+}
+
+/// As messages name a frame: the image's file, or its number in the source.
+std::string name_of(const Frame& frame, const std::string& source) {
+  if (frame.image.empty()) return source + ": frame " + std::to_string(frame.index);
+  const std::filesystem::path path = source;
+  return path.filename() == frame.image ? source : (path / frame.image).string();
+}
+
+double ms_between(std::chrono::steady_clock::time_point from, std::chrono::steady_clock::time_point to) {
+  return std::chrono::duration<double, std::milli>(to - from).count();
+}
+
+/// One run, from the configuration to the summary.
+class Run {
+ public:
+  Run(const RunArguments& arguments, LiveView* live)
+      : arguments_(arguments),
+        live_(live),
+        // Nothing but scene lines may go where scene lines go.
+        report_(arguments.output == "-" ? stderr : stdout),
+        configuration_(load(live != nullptr ? live->changes() : VisionChanges{})),
+        odometry_(arguments.odometry, loses_nothing()) {
+    check_paths(arguments_, configuration_->setup.read);
+    workspace_.watch_boundary = !arguments_.overlay_step.empty();
+  }
+
+  void operator()() {
+    end_cleanly_on_signals();
+    try {
+      open();
+    } catch (const Error&) {
+      if (!interrupted) throw;
+      tell("ended by a signal before the first frame\n");
+      return;
+    }
+    tell(fmt::format("{}: {}\n", name(), info_.description));
+    if (is_live()) std::fflush(report_);  // somebody watches
+    RunSinks sinks(arguments_);
+    progress_.emplace(!arguments_.quiet && live_ == nullptr, info_.frame_count);
+    if (arguments_.watch)
+      watch_.emplace(*configuration_,
+                     [this] { return checked(load(live_ != nullptr ? live_->changes() : VisionChanges{})); });
+    if (live_ != nullptr)
+      live_->begin(name(), info_.description, configuration_,
+                   [this](const VisionChanges& changes) { return checked(load(changes)); });
+
+    std::optional<Error> damage;
+    const auto begin = Clock::now();
+    try {
+      see_all(sinks);
+      while (plays_again()) {
+        open();
+        see_all(sinks);
+      }
+      sinks.finish();
+    } catch (const Error& error) {
+      damage = error;
+    }
+    const double seconds = ms_between(begin, Clock::now()) / 1000;
+    if (live_ != nullptr) live_->leave();
+    progress_->finish();
+    if (odometry_.get() != nullptr) summary_.set_odometry(odometry_.get()->counts());
+    tell(summary_.text(seconds, camera_summary(source_->camera_counts()) + odometry_.summary()));
+    if (interrupted) tell("\nended by a signal; all lines are complete\n");
+    tell(sinks.names());
+    if (damage) throw *damage;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  /// For people who look at it, a file has no end; unless somebody keeps what is seen of it.
+  bool plays_again() const {
+    std::error_code ignored;
+    const std::filesystem::path path = arguments_.source.source;
+    return live_ != nullptr && done_ > 0 && !interrupted && arguments_.output.empty() && arguments_.overlay.empty() &&
+           arguments_.label_maps.empty() &&
+           (std::filesystem::is_regular_file(path, ignored) || std::filesystem::is_directory(path, ignored));
+  }
+  bool is_live() const { return arguments_.source.camera.has_value(); }
+  /// Do frames wait until somebody wants them?
+  bool loses_nothing() const { return !is_live() && arguments_.source.source.find("://") == std::string::npos; }
+  const std::string& name() const { return info_.name; }
+  void tell(const std::string& text) const {
+    if (!arguments_.quiet) fmt::print(report_, "{}", text);
+  }
+  /// Something happened during the run; somebody may wait for it.
+  void tell_now(const std::string& text) const {
+    if (progress_) progress_->clear();
+    tell(text);
+    std::fflush(report_);
+  }
+
+  std::shared_ptr<const Configuration> load(const VisionChanges& changes) const {
+    return load_configuration(arguments_.robot, arguments_.colors, arguments_.plugins, [&](RobotSetup& setup) {
+      if (arguments_.start) setup.vision.start_pose = gaussian_of(*arguments_.start);
+      if (!changes.empty()) apply_changes(setup, changes);
+    });
+  }
+  void check_source(const Vision& vision) const {
+    vision.check_frames(info_.name, info_.width, info_.height, info_.range);
+  }
+  /// A configuration loaded while running must fit what is being seen.
+  std::shared_ptr<const Configuration> checked(std::shared_ptr<const Configuration> loaded) const {
+    check_source(loaded->vision);
+    check_paths(arguments_, loaded->setup.read);
+    return loaded;
+  }
+
+  void open() {
+    SourceOptions options;
+    options.location = arguments_.source.source;
+    options.raw = arguments_.source.raw;
+    options.images_range = configuration_->setup.vision.colors.range;
+    options.fps = arguments_.source.fps;
+    options.threads = arguments_.threads;
+    options.interrupted = [] { return interrupted.load(); };
+    if (is_live()) options.camera = *arguments_.source.camera;
+    // Frames that fit the camera file need no --size.
+    if (const auto& camera = configuration_->setup.vision.camera; camera && arguments_.source.size.empty()) {
+      options.camera.width = camera->width;
+      options.camera.height = camera->height;
+    }
+    options.camera_news = [this](const CameraNews& news) {
+      tell_now(fmt::format("{}: {}\n", to_string(news.state), news.text));
+    };
+    const bool is_first = !source_;
+    source_.emplace(open_source_of(options));
+    if (is_first) info_ = source_->info();  // a file that is played again is the same
+    check_source(configuration_->vision);
+  }
+
+  void see_all(RunSinks& sinks) {
+    std::optional<double> first_t;
+    auto started = Clock::now();
+    while (!interrupted) {
+      const auto before = Clock::now();
+      const std::optional<Frame> frame = source_->next();
+      if (!frame) return;
+      if (read_++ % arguments_.every != 0) continue;
+      const double decode_ms = ms_between(before, Clock::now());
+      if (live_ != nullptr && !is_live()) {
+        if (!first_t) {
+          first_t = frame->t;
+          started = Clock::now();
+        }
+        wait_until(started +
+                   std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(frame->t - *first_t)));
+      }
+      see(*frame, decode_ms, sinks);
+    }
+  }
+
+  static void wait_until(Clock::time_point then) {
+    constexpr auto patience = std::chrono::milliseconds(50);  // until a signal is noticed
+    while (!interrupted && Clock::now() < then)
+      std::this_thread::sleep_for(std::min<Clock::duration>(patience, then - Clock::now()));
+  }
+
+  void see(const Frame& frame, double decode_ms, RunSinks& sinks) {
+    RecycledString changes = taken_over(frame.index);
+    const Vision& vision = configuration_->vision;
+    vision.check_frames(name_of(frame, name()), frame.view.width(), frame.view.height(), frame.range);
+    odometry_.update(frame.t, [] { return interrupted.load(); });
+    const Odometry* const odometry = odometry_.get();
+    Scene scene = vision(frame, workspace_, odometry);
+    scene.timing.insert(scene.timing.begin(), {is_live() ? "wait" : "decode", decode_ms});
+    if (!changes.empty()) scene.why.emplace_back("configuration", std::move(changes));
+    if (odometry != nullptr) {
+      const bool known = odometry->at(frame.t).has_value();
+      summary_.add_odometry(known);
+      if (!known) scene.why.emplace_back("odometry", "missing at this time");
+    }
+    sinks.write(frame, scene, workspace_, vision.optics());
+    if (live_ != nullptr) live_->show(frame, scene, workspace_, configuration_);
+    summary_.add(scene);
+    progress_->frame(++done_);
+  }
+
+  /// Between two frames: what was chosen or written meanwhile. Says in words what happened, nothing when nothing did.
+  RecycledString taken_over(std::int64_t frame) {
+    RecycledString changes;
+    if (auto chosen = live_ != nullptr ? live_->chosen() : nullptr) {
+      configuration_ = std::move(chosen);
+      changes = "a changed one was taken over";
+      tell_now(fmt::format("frame {}: stages as chosen in the browser\n", frame));
+    }
+    auto news = watch_ ? watch_->news() : std::nullopt;
+    if (!news) return changes;
+    if (live_ != nullptr) live_->told(*news);
+    if (news->configuration) {
+      configuration_ = std::move(news->configuration);
+      changes = "a changed one was taken over";
+      tell_now(fmt::format("frame {}: the changed configuration is taken over\n", frame));
+    }
+    if (!news->refusal.empty()) {
+      changes.append(changes.empty() ? "" : "; ").append("refused, the former one goes on: ").append(news->refusal);
+      tell_now(fmt::format("frame {}: a changed configuration is refused, the former one goes on: {}\n", frame,
+                           news->refusal));
+    }
+    return changes;
+  }
+
+  const RunArguments& arguments_;
+  LiveView* live_;
+  std::FILE* report_;
+  std::shared_ptr<const Configuration> configuration_;
+  OdometryInput odometry_;
+  std::optional<FrameSource> source_;
+  SourceInfo info_;  ///< Stays as it is once other threads may look at it.
+  VisionWorkspace workspace_;
+  RunSummary summary_;
+  std::optional<Progress> progress_;
+  std::int64_t read_ = 0, done_ = 0;
+  std::optional<ConfigurationWatch> watch_;  ///< Last: its thread uses the above.
+};
+
+}  // namespace
+
+int run(const RunArguments& arguments, LiveView* live) {
+  Run one(arguments, live);
+  one();
+  return 0;
+}
+
+}  // namespace tassilo
