@@ -2,6 +2,7 @@
 
 #include <sys/stat.h>
 
+#include <atomic>
 #include <chrono>
 #include <exception>
 #include <utility>
@@ -19,10 +20,12 @@ std::shared_ptr<const Configuration> load_configuration(const std::string& robot
                                                         const std::function<void(RobotSetup&)>& change) {
   using std::chrono::system_clock, std::chrono::nanoseconds;
   const auto now = std::chrono::duration_cast<nanoseconds>(system_clock::now().time_since_epoch());
+  static std::atomic<std::int64_t> loads = 0;
   RobotSetup setup = read_robot_setup(robot_file, colors, plugins);
   change(setup);
   Vision vision(setup.vision, setup.registry);
-  return std::make_shared<const Configuration>(Configuration{now.count(), std::move(setup), std::move(vision)});
+  return std::make_shared<const Configuration>(
+      Configuration{now.count(), ++loads, std::move(setup), std::move(vision)});
 }
 
 ConfigurationWatch::FileState ConfigurationWatch::state_of(const std::string& path) {

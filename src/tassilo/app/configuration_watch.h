@@ -17,6 +17,7 @@ namespace tassilo {
 /// A robot as its files say, and the vision made of it.
 struct Configuration {
   std::int64_t read_at_ns = 0;  ///< When reading the files began, since the UNIX epoch.
+  std::int64_t load = 0;        ///< Counts the configurations that this program has loaded.
   RobotSetup setup;
   Vision vision;
 };

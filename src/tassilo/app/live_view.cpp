@@ -124,11 +124,12 @@ LiveView::~LiveView() {
   painter_.join();
 }
 
-void LiveView::begin(const std::string& source_name, const std::string& source_description,
+void LiveView::begin(const std::string& source_name, const std::string& source_description, int every,
                      std::shared_ptr<const Configuration> now, Load load) {
   const std::lock_guard lock(mutex_);
   seen_.source_name = source_name;
   seen_.source_description = source_description;
+  seen_.every = every;
   now_ = std::move(now);
   load_ = std::move(load);
 }
@@ -144,7 +145,7 @@ void LiveView::show(const Frame& frame, const Scene& scene, const VisionWorkspac
   const auto now = std::chrono::steady_clock::now();
   const double dt = std::chrono::duration<double>(now - seen_.shown_at).count();
   if (seen_.frames > 0 && dt > 0) seen_.rate_hz += (seen_.rate_hz > 0 ? share : 1) * (1 / dt - seen_.rate_hz);
-  if (seen_.frames > 0) seen_.dropped += std::max<std::int64_t>(scene.frame - seen_.frame - 1, 0);
+  if (seen_.frames > 0) seen_.dropped += std::max<std::int64_t>(scene.frame - seen_.frame - seen_.every, 0);
   seen_.shown_at = now;
   seen_.frame = scene.frame;
   seen_.t = scene.t;
@@ -176,6 +177,11 @@ VisionChanges LiveView::changes() const {
   return changes_;
 }
 
+std::shared_ptr<const Configuration> LiveView::load_with_changes(const Load& load) {
+  const std::lock_guard loading(loading_);
+  return load(changes());
+}
+
 void LiveView::told(const ConfigurationWatch::News& news) {
   const std::lock_guard lock(mutex_);
   seen_.taken_over += news.configuration != nullptr;
@@ -194,18 +200,26 @@ void LiveView::draw_pictures() {
       snapshot_.reset();
       drawing_ = true;
     }
-    OverlayOptions options;
-    const Optics* const optics = snapshot.configuration->vision.optics();
-    options.camera = optics != nullptr ? &optics->camera : nullptr;
-    options.surface = &snapshot.surface;
-    const Picture picture = draw_overlay(snapshot.frame.view, snapshot.frame.range, snapshot.scene, options);
-    constexpr int quality = 80;
-    server_.publish(
-        kPicture,
-        std::make_shared<const std::string>(encode_jpeg(picture.pixels, picture.width, picture.height, quality,
-                                                        "frame " + std::to_string(snapshot.scene.frame))),
-        WebServer::Message::binary);
+    std::string fault;
+    try {
+      server_.publish(kPicture, std::make_shared<const std::string>(picture_of(snapshot)), WebServer::Message::binary);
+    } catch (const std::exception& error) {  // the vision goes on without a picture
+      fault = error.what();
+    }
+    const std::lock_guard lock(mutex_);
+    seen_.picture_fault = std::move(fault);
   }
+}
+
+std::string LiveView::picture_of(const Snapshot& snapshot) {
+  OverlayOptions options;
+  const Optics* const optics = snapshot.configuration->vision.optics();
+  options.camera = optics != nullptr ? &optics->camera : nullptr;
+  options.surface = &snapshot.surface;
+  const Picture picture = draw_overlay(snapshot.frame.view, snapshot.frame.range, snapshot.scene, options);
+  constexpr int quality = 80;
+  return encode_jpeg(picture.pixels, picture.width, picture.height, quality,
+                     "frame " + std::to_string(snapshot.scene.frame));
 }
 
 std::string LiveView::state_json() const {
@@ -221,7 +235,8 @@ std::string LiveView::state_json() const {
               {"dropped", seen_.dropped},
               {"configuration", {{"taken_over", seen_.taken_over}, {"refusal", seen_.refusal}}},
               {"web", {{"clients", counts.clients}, {"sent", counts.sent}, {"dropped", counts.dropped}}},
-              {"ended", false}});
+              {"picture_fault", seen_.picture_fault},
+              {"ended", load_ == nullptr && seen_.frames > 0}});
   if (now_ && now_->vision.optics() != nullptr) state["field"] = field_json(now_->setup.vision.field);
   return state.dump(-1, ' ', false, json::error_handler_t::replace);
 }

@@ -29,7 +29,8 @@ void apply_changes(RobotSetup& setup, const VisionChanges& changes);
 /// The vision never waits for it: a picture is drawn and encoded in a thread of its own, from the newest frame that was
 /// there when it had time, and only while somebody looks.
 ///
-/// threads  `show`, `changed` and `told` from the run's thread; requests are answered on the server's
+/// threads  `begin`, `show`, `chosen`, `told` and `leave` from the run's thread, `changes` and `load_with_changes` from
+///          any; requests are answered on the server's
 class LiveView {
  public:
   /// Loads the configuration with these changes. Throws Error for what is wrong with them.
@@ -44,7 +45,8 @@ class LiveView {
   std::string url() const { return server_.url(); }
 
   /// A source is open: from now on stages can be changed.
-  void begin(const std::string& source_name, const std::string& source_description,
+  /// every   of so many frames one is seen
+  void begin(const std::string& source_name, const std::string& source_description, int every,
              std::shared_ptr<const Configuration> now, Load load);
   /// One frame was seen. Does not wait.
   void show(const Frame& frame, const Scene& scene, const VisionWorkspace& workspace,
@@ -56,6 +58,8 @@ class LiveView {
   std::shared_ptr<const Configuration> chosen();
   /// What is changed over the robot file now.
   VisionChanges changes() const;
+  /// What `load` makes of the changes there are; no other load runs meanwhile.
+  std::shared_ptr<const Configuration> load_with_changes(const Load& load);
   /// The run has taken over, or refused, what it found in the files.
   void told(const ConfigurationWatch::News& news);
 
@@ -69,17 +73,21 @@ class LiveView {
   };
   struct Seen {
     std::string source_name, source_description;
-    std::int64_t frame = -1, frames = 0, dropped = 0;
+    std::int64_t frame = -1, frames = 0;
+    std::int64_t dropped = 0;  ///< Frames of the source that were not seen, but for those left out on purpose.
+    int every = 1;
     double t = 0, rate_hz = 0;
     std::chrono::steady_clock::time_point shown_at;
     std::int64_t taken_over = 0;
     std::string refusal;
+    std::string picture_fault;  ///< Why the last picture could not be made; empty when it could.
   };
 
   WebResponse answer(const WebRequest& request);
   WebResponse change_stages(const std::string& body);
   std::string state_json() const;
   void draw_pictures();
+  static std::string picture_of(const Snapshot& snapshot);
 
   const std::string robot_file_;
   std::mutex loading_;        ///< Held while a configuration is loaded; before the other one.

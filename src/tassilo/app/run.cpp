@@ -88,6 +88,13 @@ class Run {
     workspace_.watch_boundary = !arguments_.overlay_step.empty();
   }
 
+  /// However it ends: nobody asks it for configurations any more.
+  ~Run() {
+    if (live_ != nullptr) live_->leave();
+  }
+  Run(const Run&) = delete;
+  Run& operator=(const Run&) = delete;
+
   void operator()() {
     end_cleanly_on_signals();
     try {
@@ -102,10 +109,13 @@ class Run {
     RunSinks sinks(arguments_);
     progress_.emplace(!arguments_.quiet && live_ == nullptr, info_.frame_count);
     if (arguments_.watch)
-      watch_.emplace(*configuration_,
-                     [this] { return checked(load(live_ != nullptr ? live_->changes() : VisionChanges{})); });
+      watch_.emplace(*configuration_, [this] {
+        // One load after the other: what is chosen in a browser meanwhile is not lost by an older one.
+        const auto with = [this](const VisionChanges& changes) { return checked(load(changes)); };
+        return live_ != nullptr ? live_->load_with_changes(with) : with({});
+      });
     if (live_ != nullptr)
-      live_->begin(name(), info_.description, configuration_,
+      live_->begin(name(), info_.description, arguments_.every, configuration_,
                    [this](const VisionChanges& changes) { return checked(load(changes)); });
 
     std::optional<Error> damage;
@@ -121,7 +131,6 @@ class Run {
       damage = error;
     }
     const double seconds = ms_between(begin, Clock::now()) / 1000;
-    if (live_ != nullptr) live_->leave();
     progress_->finish();
     if (odometry_.get() != nullptr) summary_.set_odometry(odometry_.get()->counts());
     tell(summary_.text(seconds, camera_summary(source_->camera_counts()) + odometry_.summary()));
@@ -195,8 +204,8 @@ class Run {
   }
 
   void see_all(RunSinks& sinks) {
-    std::optional<double> first_t;
-    auto started = Clock::now();
+    std::optional<double> last_t;
+    auto due = Clock::now();
     while (!interrupted) {
       const auto before = Clock::now();
       const std::optional<Frame> frame = source_->next();
@@ -204,14 +213,26 @@ class Run {
       if (read_++ % arguments_.every != 0) continue;
       const double decode_ms = ms_between(before, Clock::now());
       if (live_ != nullptr && !is_live()) {
-        if (!first_t) {
-          first_t = frame->t;
-          started = Clock::now();
-        }
-        wait_until(started +
-                   std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(frame->t - *first_t)));
+        // In real time, but a gap in the recording does not stop it for long.
+        constexpr double longest_gap = 1;  // [s]
+        const double step = last_t ? std::clamp(frame->t - *last_t, 0., longest_gap) : 0;
+        due = std::max(due + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(step)),
+                       Clock::now() - std::chrono::seconds(1));
+        last_t = frame->t;
+        wait_until(due);
       }
       see(*frame, decode_ms, sinks);
+    }
+  }
+
+  /// What a stage of a shared library throws is the world's failure, too.
+  Scene seen_by(const Vision& vision, const Frame& frame, const Odometry* odometry) {
+    try {
+      return vision(frame, workspace_, odometry);
+    } catch (const Error&) {
+      throw;
+    } catch (const std::exception& error) {
+      throw Error(name_of(frame, name()), std::string("a stage failed: ") + error.what());
     }
   }
 
@@ -227,7 +248,7 @@ class Run {
     vision.check_frames(name_of(frame, name()), frame.view.width(), frame.view.height(), frame.range);
     odometry_.update(frame.t, [] { return interrupted.load(); });
     const Odometry* const odometry = odometry_.get();
-    Scene scene = vision(frame, workspace_, odometry);
+    Scene scene = seen_by(vision, frame, odometry);
     scene.timing.insert(scene.timing.begin(), {is_live() ? "wait" : "decode", decode_ms});
     if (!changes.empty()) scene.why.emplace_back("configuration", std::move(changes));
     if (odometry != nullptr) {
@@ -252,7 +273,8 @@ class Run {
     auto news = watch_ ? watch_->news() : std::nullopt;
     if (!news) return changes;
     if (live_ != nullptr) live_->told(*news);
-    if (news->configuration) {
+    // A choice that was made after the files were read is in neither of them alone; the later load has both.
+    if (news->configuration && news->configuration->load > configuration_->load) {
       configuration_ = std::move(news->configuration);
       changes = "a changed one was taken over";
       tell_now(fmt::format("frame {}: the changed configuration is taken over\n", frame));

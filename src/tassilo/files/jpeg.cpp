@@ -1,6 +1,7 @@
 #include "tassilo/files/jpeg.h"
 
 #include <jpeglib.h>
+#include <csetjmp>
 #include <cstddef>
 #include <cstdio>  // before jpeglib, which wants FILE
 #include <cstdlib>
@@ -11,9 +12,12 @@
 namespace tassilo {
 namespace {
 
-/// The library reports by longjmp or exit; here by an exception, which its C code lets through only where it is
-/// compiled to: so what can go wrong is excluded before it is called, and the rest is lack of memory.
-[[noreturn]] void fail(j_common_ptr) { throw Error("jpeg", "cannot be encoded"); }
+/// The library's errors, and where to go on after one: no exception may pass its C code.
+struct Errors {
+  jpeg_error_mgr manager;  ///< First: the library knows this part only.
+  jmp_buf after;
+};
+[[noreturn]] void fail(j_common_ptr encoder) { longjmp(reinterpret_cast<Errors*>(encoder->err)->after, 1); }
 
 }  // namespace
 
@@ -27,12 +31,16 @@ std::string encode_jpeg(std::span<const std::uint8_t> rgb, int width, int height
   expects(comment.size() <= longest_comment, "encode_jpeg: a comment of at most 65533 bytes");
   expects(quality >= 1 && quality <= 100, "encode_jpeg: quality 1..100");
   jpeg_compress_struct encoder;
-  jpeg_error_mgr errors;
-  encoder.err = jpeg_std_error(&errors);
-  errors.error_exit = fail;
-  jpeg_create_compress(&encoder);
+  Errors errors;
+  encoder.err = jpeg_std_error(&errors.manager);
+  errors.manager.error_exit = fail;
   unsigned char* bytes = nullptr;
   unsigned long size = 0;
+  jpeg_create_compress(&encoder);
+  if (setjmp(errors.after) != 0) {
+    jpeg_destroy_compress(&encoder);  // its output is lost: only it knows where that was
+    throw Error("jpeg", "cannot be encoded");
+  }
   jpeg_mem_dest(&encoder, &bytes, &size);
   encoder.image_width = static_cast<JDIMENSION>(width);
   encoder.image_height = static_cast<JDIMENSION>(height);

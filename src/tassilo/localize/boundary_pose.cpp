@@ -32,7 +32,7 @@ struct FloorLine {
   FloorPoint middle;
   double normal = 0;  ///< [rad]
   double length = 0;  ///< [m]
-  /// Of the direction, and of the middle across the line: they do not depend on each other.
+  /// Of the direction, and of the middle across the line; taken as independent of each other.
   double sigma_normal = 0, sigma_middle = 0;
   double column = 0;  ///< Of its middle in the image. [px]
 
@@ -287,7 +287,8 @@ Localized localize_by_boundary(const FieldTarget& target, const PoseBelief& befo
   belief.doubts = fix.refused > 0 ? before.doubts + 1 : fix.matches.empty() ? before.doubts : 0;
   result.why = std::move(fix.why);
   if (!fix.pose) {
-    belief.hypotheses = before.hypotheses;
+    for (const PoseHypothesis& one : before.hypotheses)
+      belief.hypotheses.push_back({moved(one.pose, motion), one.log_weight});
     return result;
   }
   belief.told = true;

@@ -316,9 +316,15 @@ TEST_F(PoseByBoundary, CovarianceGrowsWithOdometryAndShrinksWithLines) {
 TEST_F(PoseByBoundary, AnUndecidedBeliefIsNoPrediction) {
   PoseBelief belief = belief_in(pose_gaussian(1.5, 0.2, 0.25, 0.05, 0.05), 0);
   belief.hypotheses.push_back({pose_gaussian(-1.5, -0.2, 0.25 - std::numbers::pi, 0.05, 0.05), 0});
-  const Localized localized = localize_by_boundary(target, belief, {}, {{}, {}, camera}, 0.1);
+  RobotMotion driven;
+  driven.x = 0.2;
+  const Localized localized = localize_by_boundary(target, belief, driven, {{}, {}, camera}, 0.1);
   EXPECT_FALSE(localized.pose);
-  EXPECT_EQ(localized.belief.hypotheses.size(), 2u) << "but is kept for who knows what to do with it";
+  ASSERT_EQ(localized.belief.hypotheses.size(), 2u) << "but is kept for who knows what to do with it";
+  for (std::size_t k = 0; k < 2; ++k) {
+    const PoseGaussian expected = moved(belief.hypotheses[k].pose, driven);
+    EXPECT_DOUBLE_EQ(localized.belief.hypotheses[k].pose.x, expected.x) << "and moves with the robot";
+  }
 }
 
 }  // namespace

@@ -159,7 +159,6 @@ Localized localize(const FieldTarget& target, const PoseBelief& before, const Ro
     return result;
   }
   const bool tied = best->lines_explained > 0;
-  if (tied) belief.fixed_at = t;
   result.line_of = best->line_of;
 
   const Shares shares = shares_of(belief);
@@ -172,9 +171,11 @@ Localized localize(const FieldTarget& target, const PoseBelief& before, const Ro
     result.why.append(std::to_string(best->lines_seen)).append(" lines explained");
     return result;
   }
+  const bool mirror = shares.best < options.certain;
+  if (tied && !mirror) belief.fixed_at = t;
   PoseSeen told =
       told_pose(belief.hypotheses.front().pose, tied ? PoseKind::model : PoseKind::predicted, t - belief.fixed_at);
-  told.mirror = shares.best < options.certain;
+  told.mirror = mirror;
   result.pose = told;
   belief.told = true;
   belief.tied = belief.tied || tied;

@@ -45,7 +45,8 @@ PoseFit fit_pose(const FieldTarget& target, const PoseObservation& seen, const P
 
 /// The same for a prior so wide that several poses within it may explain what is seen: all of them, most likely first,
 /// the last resort among them that nothing seen is of the field. Likelihoods are those of what is seen, times the share
-/// of the prior's belief that a pose stands for, relative to the first one's share.
+/// of the prior's belief that a pose stands for, relative to the first one's share, less what each line costs that a
+/// pose leaves unexplained: within one prior, more lines explained is likelier.
 ///
 /// may_tilt   the robot may nod and roll by up to two degrees as it drives; counts where marks tell the eye
 ///

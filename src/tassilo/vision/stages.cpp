@@ -58,12 +58,25 @@ bool is_name(const std::string& text) {
          std::ranges::all_of(text, [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; });
 }
 
+bool is_there(const Localizer& made) { return static_cast<bool>(made.run); }
+template <class Function>
+bool is_there(const Function& made) {
+  return static_cast<bool>(made);
+}
+
+template <class Function>
+Function made_by(const Stage<Function>& stage, const Alternative<Function>& alternative, const VisionOptions& options) {
+  Function made = alternative.make(options);
+  if (!is_there(made)) throw Error("vision." + std::string(stage.key), shown(alternative.name) + " makes no function");
+  return made;
+}
+
 template <class Function>
 Function chosen(const Stage<Function>& stage, const VisionOptions& options) {
   const auto entry = options.stages.find(stage.key);
-  if (entry == options.stages.end()) return stage.alternatives.front().make(options);
+  if (entry == options.stages.end()) return made_by(stage, stage.alternatives.front(), options);
   const auto found = std::ranges::find(stage.alternatives, entry->second, &Alternative<Function>::name);
-  if (found != stage.alternatives.end()) return found->make(options);
+  if (found != stage.alternatives.end()) return made_by(stage, *found, options);
   std::vector<std::string_view> names;
   for (const auto& alternative : stage.alternatives) names.push_back(alternative.name);
   throw Error("vision." + std::string(stage.key), "is " + shown(entry->second) + ", must be " + joined(names));
@@ -129,8 +142,10 @@ void check_stages(const StageRegistry& registry, const std::string& source) {
         if (!is_name(option.key))
           throw Error(source, "option " + shown(option.key) + " must be named by a-z, 0-9 and _");
         if (!keys.insert(option.key).second) throw Error(source, "option " + shown(option.key) + " exists already");
-        if (!(option.low <= option.standard && option.standard <= option.high))
-          throw Error(source, "option " + shown(option.key) + " has a default outside of its range");
+        constexpr double most = 1e9;  // also as a whole number
+        if (!(-most <= option.low && option.low <= option.standard && option.standard <= option.high &&
+              option.high <= most))
+          throw Error(source, "option " + shown(option.key) + " must have -1e9 <= low <= default <= high <= 1e9");
       }
     }
   });

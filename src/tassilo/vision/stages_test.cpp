@@ -68,7 +68,7 @@ TEST(CheckStages, RefusesWhatDoesNotFit) {
   EXPECT_THAT(message([](auto& a) { a.options[0].key = "Reach"; }), HasSubstr("must be named by a-z, 0-9 and _"));
   for (const double standard : {-0.1, 9.1, std::numeric_limits<double>::quiet_NaN()})
     EXPECT_EQ(message([&](auto& a) { a.options[0].standard = standard; }),
-              "blind.so: option 'blind_reach' has a default outside of its range");
+              "blind.so: option 'blind_reach' must have -1e9 <= low <= default <= high <= 1e9");
 }
 
 TEST(StageChoice, IsReadByName) {

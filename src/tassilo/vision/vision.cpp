@@ -33,10 +33,9 @@ Vision::Vision(const VisionSetup& setup) : Vision(setup, built_in_stages()) {}
 Vision::Vision(const VisionSetup& setup, const StageRegistry& registry)
     : classifier_(setup.colors),
       field_(setup.field),
-      options_(setup.options),
+      options_((setup.options.check(), setup.options)),
       stages_(chosen_stages(registry, setup.options)) {
   setup.colors.check();
-  setup.options.check();
   if (field_.line_width > 0) options_.surface.line_width = field_.line_width;
   if (!setup.camera || !setup.mount) return;
   setup.camera->check();

@@ -25,6 +25,8 @@ std::string_view token_in(std::string_view cookies) {
 bool names_this_machine(std::string_view host, std::string_view address, int port) {
   const std::string port_text = std::to_string(port);
   const auto is = [&](std::string_view name) {
+    constexpr int left_out = 80;  // browsers do not name the usual port
+    if (port == left_out && host == name) return true;
     return host.size() == name.size() + 1 + port_text.size() && host.starts_with(name) && host[name.size()] == ':' &&
            host.ends_with(port_text);
   };

@@ -32,6 +32,12 @@ TEST(Access, OnLoopbackTheHostMustBeThisMachine) {
     EXPECT_EQ(access_of(from(host), "127.0.0.1", 8080, ""), Access::wrong_host) << host;
 }
 
+TEST(Access, TheUsualPortIsNotNamed) {
+  EXPECT_EQ(access_of(from("localhost", "http://localhost"), "127.0.0.1", 80, ""), Access::granted);
+  EXPECT_EQ(access_of(from("localhost:80"), "127.0.0.1", 80, ""), Access::granted);
+  EXPECT_EQ(access_of(from("evil.example"), "127.0.0.1", 80, ""), Access::wrong_host);
+}
+
 TEST(Access, PagesOfOthersMayNotAsk) {
   EXPECT_EQ(access_of(from("localhost:8080", "http://localhost:8080"), "127.0.0.1", 8080, ""), Access::granted);
   for (const char* origin : {"http://evil.example", "null", "https://localhost:8080", "http://localhost:8081"})

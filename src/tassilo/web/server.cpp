@@ -5,6 +5,7 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
@@ -327,7 +328,7 @@ void WebOptions::check() const {
 
 class WebServer::Implementation {
  public:
-  Implementation(const WebOptions& options, WebHandler handler) : acceptor_(context_) {
+  Implementation(const WebOptions& options, WebHandler handler) : acceptor_(context_), pause_(context_) {
     options.check();
     shared_.options = options;
     shared_.handler = std::move(handler);
@@ -345,7 +346,7 @@ class WebServer::Implementation {
     acceptor_.listen(asio::socket_base::max_listen_connections, error), must();
     shared_.port = acceptor_.local_endpoint().port();
     accept();
-    thread_ = std::thread([this] { context_.run(); });
+    thread_ = std::thread([this] { serve(); });
   }
   ~Implementation() {
     context_.stop();
@@ -384,10 +385,30 @@ class WebServer::Implementation {
   }
 
  private:
+  /// A connection for which there is no memory, say, is dropped; the others go on.
+  void serve() {
+    for (;;) {
+      try {
+        context_.run();
+        return;
+      } catch (const std::exception&) {
+        ++shared_.refused;
+      }
+    }
+  }
+
   void accept() {
     acceptor_.async_accept([this](ErrorCode error, tcp::socket socket) {
       if (error == asio::error::operation_aborted) return;
-      if (!error) {
+      if (error) {
+        // No file descriptor is left, say: it does not help to ask again at once.
+        pause_.expires_after(std::chrono::milliseconds(100));
+        pause_.async_wait([this](ErrorCode cancelled) {
+          if (!cancelled) accept();
+        });
+        return;
+      }
+      {
         socket.set_option(tcp::no_delay(true), error);
         const bool is_full = shared_.clients >= shared_.options.max_clients;
         const auto session = std::make_shared<Session>(std::move(socket), shared_, channels_);
@@ -404,6 +425,7 @@ class WebServer::Implementation {
   std::map<std::string, Channel, std::less<>> channels_;  //
   asio::io_context context_{1};
   tcp::acceptor acceptor_;
+  asio::steady_timer pause_;
   std::thread thread_;
 };
 

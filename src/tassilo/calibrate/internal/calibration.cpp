@@ -128,6 +128,7 @@ std::optional<double> Calibration::cross_validated() {
   if (folds < 2 || used.size() - (used.size() + folds - 1) / folds < static_cast<std::size_t>(kLeastViews))
     return std::nullopt;
   double sum = 0, count = 0;
+  bool all_converged = true;
   for (std::size_t fold = 0; fold < folds; ++fold) {
     const auto select = [&](bool left_out) {
       for (std::size_t i = 0; i < used.size(); ++i) bundle_.use_view(used[i], (i % folds == fold) == left_out);
@@ -136,6 +137,7 @@ std::optional<double> Calibration::cross_validated() {
     const BundleFit others = bundle_.fit(state_, fixed_, sigmas_, 0);
     select(true);
     const BundleFit fit = bundle_.fit_poses(others.state, kFirstLoss);
+    all_converged = all_converged && others.converged && fit.converged;
     const double off = rms(fit.state, used_views());
     double points = 0;
     for (const std::size_t v : used) points += static_cast<double>(bundle_.used_points(v));
@@ -143,6 +145,7 @@ std::optional<double> Calibration::cross_validated() {
     count += points;
   }
   for (const std::size_t v : used) bundle_.use_view(v, true);
+  if (!all_converged) return std::nullopt;
   return std::sqrt(sum / count);
 }
 
