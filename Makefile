@@ -12,7 +12,7 @@ help:  ## this list
 
 .PHONY: demo
 demo: install-deps  ## install what is missing, build, run the vision on the shipped recording, say where the video is
-	$(call build,release) --target tassilo
+	$(call build,release) --target tassilo $(if $(and $(shell command -v node),$(shell command -v npm)),webui)
 	tools/demo.sh
 
 .PHONY: test

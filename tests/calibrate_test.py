@@ -5,6 +5,7 @@ usage: tests/calibrate_test.py PROGRAM [--figures | unittest arguments]     --fi
 """
 import math
 import re
+import shutil
 import sys
 import unittest
 
@@ -66,7 +67,7 @@ def mapped_errors(truth, found, size):
 class Calibrate(ProgramTest):
     def calibrate(self, camera, images, model):
         files = sorted((VIEWS / camera).glob(f"{images}*.png"))
-        return files, self.succeeds("calibrate", "intrinsics", *files, *TARGETS, "--model", model, "--output", f"{camera}.yaml", "--report", "report")
+        return files, self.succeeds("calibrate", "intrinsics", *files, *TARGETS, "--model", model, "--output", f"camera_{camera}.yaml", "--report", "report")
 
     def test_true_cameras(self):
         print(f"{'views':24}{'RMS':>7}{'left out':>9}{'focal':>9}{'centre':>8}{'mapped':>8}{'covered':>9}{'sigmas':>8}")
@@ -76,7 +77,7 @@ class Calibrate(ProgramTest):
                 self.assertIn(f"{len(files)} of {len(files)} images show a target", result.out)
                 self.assertNotIn("not used", result.out)
                 truth, size = read_camera(VIEWS / f"{camera}.yaml")
-                found, _ = read_camera(self.folder / f"{camera}.yaml")
+                found, _ = read_camera(self.folder / f"camera_{camera}.yaml")
                 sigmas = {name: float(sigma) for name, sigma in re.findall(r"^(\w+) +-?[\d.]+ \+- ([\d.]+)", result.out, re.MULTILINE)}
                 rms, left_out = (float(x) for x in re.search(r"RMS ([\d.]+) px in \d+ views; ([\d.]+) px in views left out", result.out).groups())
                 reach = int(re.search(r"up to (\d+) % of the way", result.out)[1]) / 100
@@ -98,17 +99,30 @@ class Calibrate(ProgramTest):
                 self.assertEqual("only 4 views" in result.err, camera == "xga")
                 self.assertTrue((self.folder / "report/residuals.png").read_bytes().startswith(b"\x89PNG"))
 
-    def test_a_mount_is_kept_when_asked(self):
+    def test_a_mount_is_kept_unless_asked(self):
         mount = "camera_pose_in_robot: {x: 0.06, y: 0.015, z: 0.52, roll: 0, pitch: 0.24, yaw: 0}"
         text = (VIEWS / "div.yaml").read_text()
         text = re.sub("camera_pose_in_robot.*", mount, text)
         (self.folder / "mounted.yaml").write_text(text)
         arguments = ("calibrate", "intrinsics", VIEWS / "div", *TARGETS, "--model", "division", "--output", "mounted.yaml", "--quiet")
-        self.succeeds(*arguments, "--keep-mount")
+        self.succeeds(*arguments)
         self.assertIn("pitch: 0.24", (self.folder / "mounted.yaml").read_text())
         self.assertIn("camera_name: mounted", (self.folder / "mounted.yaml").read_text())
-        self.succeeds(*arguments)
+        self.succeeds(*arguments, "--no-keep-mount")
         self.assertNotIn("camera_pose_in_robot", (self.folder / "mounted.yaml").read_text())
+
+    def test_what_is_there_is_not_lost(self):
+        self.write("notes.yaml", "not a camera\n")
+        arguments = ("calibrate", "intrinsics", VIEWS / "div", *TARGETS, "--model", "division", "--quiet", "--output")
+        self.fails(*arguments, "notes.yaml", says=("notes.yaml", "--no-keep-mount"))
+        self.assertEqual((self.folder / "notes.yaml").read_text(), "not a camera\n")
+        self.fails(*arguments, "nowhere/camera.yaml", says=("nowhere", "there is no folder"))
+        views = self.folder / "views"
+        views.mkdir()
+        shutil.copy(VIEWS / "div/circles_00.png", views / "a.png")
+        self.fails("calibrate", "intrinsics", "views", *TARGETS, "--output", "views/a.png", says=("views/a.png", "would be lost"))
+        self.assertTrue((views / "a.png").read_bytes().startswith(b"\x89PNG"))
+        self.refuses("calibrate", "target", "dots:7x7:25:6.25", "--output", "mm.png", says="lengths are in metres")
 
     def test_other_images_have_no_target(self):
         image = VIEWS / "div/circles_00.png"

@@ -136,6 +136,7 @@ class Serve(ProgramTest):
         out, err = self.process.communicate(timeout=TIMEOUT_S)
         self.assertEqual(self.process.returncode, 0, err)
         self.assertIn(b"ended by a signal", out)
+        self.assertIn(b", 0 dropped", out)
         for channel in (scenes, pictures):
             channel.close()
 

@@ -33,7 +33,7 @@ struct IntrinsicsArguments {
   std::vector<std::string> images, targets;
   std::string model = "plumb_bob", output, report, name;
   IntrinsicsOptions options;
-  bool keep_mount = false, quiet = false;
+  bool keep_mount = true, quiet = false;
 };
 
 /// An image that was looked at, and what was found.
@@ -162,7 +162,16 @@ int intrinsics_command(const IntrinsicsArguments& arguments) {
   for (const std::string& image : arguments.images) read.push_back({"an image", image});
   check_written_files(read, std::vector<NamedFile>{{"--output", arguments.output}, {"--report", arguments.report}});
   std::optional<CameraMount> mount;
-  if (arguments.keep_mount && fs::exists(arguments.output)) mount = read_camera(arguments.output).mount;
+  if (arguments.keep_mount && fs::exists(arguments.output)) {
+    try {
+      mount = read_camera(arguments.output).mount;
+    } catch (const Error& error) {
+      throw Error(arguments.output, std::string("is there and no camera file whose mount could be kept (") +
+                                        error.what() + "); --no-keep-mount replaces it");
+    }
+  }
+  if (const fs::path folder = fs::path(arguments.output).parent_path(); !folder.empty() && !fs::is_directory(folder))
+    throw Error(arguments.output, "cannot be created: there is no folder " + folder.string());
 
   const Looks looks = look_at_all(arguments.images, targets);
   if (!arguments.quiet) fmt::print("{} of {} images show a target\n", looks.views.size(), looks.looks.size());
@@ -223,7 +232,8 @@ Command add_intrinsics(CLI::App& calibrate) {
   command->add_option("-o,--output", arguments->output, "camera.yaml to write")->required();
   command->add_option("--report", arguments->report, "folder for a picture of residuals and coverage, residuals.png");
   command->add_option("--name", arguments->name, "camera_name (default: the name of --output)");
-  command->add_flag("--keep-mount", arguments->keep_mount, "keep camera_pose_in_robot of the file that is replaced");
+  command->add_flag("--keep-mount,!--no-keep-mount", arguments->keep_mount,
+                    "keep camera_pose_in_robot of the file that is replaced (default)");
   IntrinsicsOptions& options = arguments->options;
   command->add_option("--radial-terms", options.radial_terms, "radial coefficients to estimate (0: all of the model)")
       ->capture_default_str();

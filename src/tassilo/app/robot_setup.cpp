@@ -65,7 +65,9 @@ RobotSetup read_robot_setup(const std::string& robot_file, const std::string& co
     const std::string file = named_file(robot_file, "camera", *robot.camera, "");
     const CameraFile camera = read_camera(file);
     if (!camera.mount)
-      throw Error(file, "has no camera_pose_in_robot; without a mount leave `camera:` out of the robot file");
+      throw Error(file,
+                  "has no camera_pose_in_robot; add `camera_pose_in_robot: {x: .., y: .., z: .., roll: .., pitch: .., "
+                  "yaw: ..}` in m and rad, or leave `camera:` out of the robot file");
     if (!robot.field)
       throw Error(robot_file, "has a camera but no `field:`; sizes of ball, goals and lines are needed on the floor");
     setup.vision.camera = camera.model;

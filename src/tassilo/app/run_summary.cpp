@@ -27,7 +27,8 @@ RunSummary::Count& RunSummary::count_of(const std::string& kind) {
 }
 
 void RunSummary::add(const Scene& scene) {
-  if (frames_ == 0) first_index_ = scene.frame;
+  // A source that is played again begins to count again.
+  if (frames_ > 0 && scene.frame > last_index_) dropped_ += scene.frame - last_index_ - 1;
   last_index_ = scene.frame;
   ++frames_;
   const auto count = [&](const std::string& kind, std::size_t objects) {
@@ -52,7 +53,11 @@ void RunSummary::add(const Scene& scene) {
   for (const StageTime& time : scene.timing) {
     auto it = std::ranges::find(times_, time.stage, &std::pair<std::string, std::vector<double>>::first);
     if (it == times_.end()) it = times_.insert(times_.end(), {time.stage, {}});
-    it->second.push_back(time.ms);
+    constexpr std::size_t most = 200'000;  // of a run without end the last two hours
+    if (it->second.size() < most)
+      it->second.push_back(time.ms);
+    else
+      it->second[static_cast<std::size_t>(frames_) % most] = time.ms;
   }
 }
 
@@ -78,8 +83,7 @@ std::string RunSummary::odometry_text() const {
 std::string RunSummary::text(double seconds, const std::string& source) const {
   std::string out = fmt::format("\n{} frames in {:.2f} s", frames_, seconds);
   if (frames_ > 0 && seconds > 0) out += fmt::format(", {:.1f} frames/s", static_cast<double>(frames_) / seconds);
-  const std::int64_t dropped = frames_ > 0 ? last_index_ - first_index_ + 1 - frames_ : 0;
-  out += fmt::format(", {} dropped\n", dropped);
+  out += fmt::format(", {} dropped\n", dropped_);
   out += source + odometry_text();
   if (frames_ == 0) return out;
   out += fmt::format("\n{:16}{:>10}{:>10}\n", "seen", "frames", "objects");

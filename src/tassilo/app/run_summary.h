@@ -24,7 +24,7 @@ class RunSummary {
 
  private:
   std::int64_t frames_ = 0;
-  std::int64_t first_index_ = 0, last_index_ = 0;
+  std::int64_t last_index_ = 0, dropped_ = 0;
   std::int64_t odometry_known_ = 0, odometry_missing_ = 0;
   SequenceCounts odometry_samples_;
   struct Count {

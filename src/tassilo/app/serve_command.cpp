@@ -46,9 +46,11 @@ int serve(const ServeArguments& arguments) {
   if (!is_loopback(web.address) && web.token.empty()) web.token = new_token();
   LiveView live(web, arguments.run.robot);
   if (!arguments.run.quiet) {
-    fmt::print("open {} in a browser{}; Ctrl-C ends\n", live.url(),
+    fmt::print("{} {}{}; Ctrl-C ends\n", web.pages.empty() ? "serving at" : "open in a browser:", live.url(),
                is_loopback(web.address) ? "" : " (the address of this machine instead of " + web.address + ")");
-    if (web.pages.empty()) fmt::print("the pages are not installed: only the interface for programs is there\n");
+    if (web.pages.empty())
+      fmt::print(
+          "without pages, only the interface for programs: they are built by `make release` where node and npm are\n");
     if (!is_loopback(web.address) && isatty(STDOUT_FILENO) == 1) fmt::print("{}", terminal_qr(live.url()));
     std::fflush(stdout);
   }
@@ -59,7 +61,9 @@ int serve(const ServeArguments& arguments) {
 
 Command add_serve(CLI::App& program) {
   auto* command = program.add_subcommand(
-      "serve", "run, and show it to browsers: live picture, scene, times; stages exchanged while it runs");
+      "serve",
+      "run, and show it to browsers: live picture, scene, times; stages exchanged while it runs, changed files "
+      "taken over; files are played in real time, again and again unless something is written of them");
   auto arguments = std::make_shared<ServeArguments>();
   arguments->run.watch = true;
   add_run_options(*command, arguments->run);

@@ -46,6 +46,8 @@ void Target::check() const {
   check_count("target.rows", rows);
   check_finite("target.pitch", pitch);
   check_above("target.pitch", pitch, 0);
+  if (constexpr double most = 1; pitch > most)
+    throw Error("target.pitch", "is " + shortest(pitch) + " m, must be at most 1; lengths are in metres");
   if (kind == TargetKind::checkerboard) {
     if ((columns + rows) % 2 == 0)
       throw Error("target", "is a checkerboard of " + std::to_string(columns) + " x " + std::to_string(rows) +

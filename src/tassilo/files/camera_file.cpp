@@ -100,8 +100,9 @@ Distortion distortion_of(const Value& name, const Value& coefficients) {
 
 CameraMount mount_of(const Value& value) {
   const Map map = value.map({"x", "y", "z", "roll", "pitch", "yaw"});
-  return {map.at("x").number(),    map.at("y").number(),     map.at("z").number(),
-          map.at("roll").number(), map.at("pitch").number(), map.at("yaw").number()};
+  constexpr double most = 10;  // [m] more are millimetres
+  return {map.at("x").number(-most, most), map.at("y").number(-most, most), map.at("z").number(-most, most),
+          map.at("roll").number(),         map.at("pitch").number(),        map.at("yaw").number()};
 }
 
 CameraFile camera_of(const Value& root, const std::string& file) {
