@@ -46,7 +46,8 @@ int serve(const ServeArguments& arguments) {
   if (!is_loopback(web.address) && web.token.empty()) web.token = new_token();
   LiveView live(web, arguments.run.robot);
   if (!arguments.run.quiet) {
-    fmt::print("{} {}{}; Ctrl-C ends\n", web.pages.empty() ? "serving at" : "open in a browser:", live.url(),
+    fmt::print("{} {} {}{}; Ctrl-C ends\n", web.pages.empty() ? "serving at" : "open", live.url(),
+               web.pages.empty() ? "for programs" : "in a browser",
                is_loopback(web.address) ? "" : " (the address of this machine instead of " + web.address + ")");
     if (web.pages.empty())
       fmt::print(
