@@ -31,8 +31,7 @@ struct Settable {
   VisionOptions chosen;
 
   bool runs(const StageInfo& stage, const StageInfo::Alternative& alternative) const {
-    const auto entry = chosen.stages.find(stage.key);
-    return alternative.name == (entry != chosen.stages.end() ? entry->second : stage.alternatives.front().name);
+    return alternative.name == chosen_name(stage, chosen);
   }
   /// "; here 7" where the robot file says so.
   std::string here(const std::string& key) const {

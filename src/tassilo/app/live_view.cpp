@@ -37,14 +37,12 @@ std::string stages_json(const Configuration& configuration, const VisionChanges&
   };
   json stages = json::array();
   for (const StageInfo& stage : stage_infos(configuration.setup.registry)) {
-    const auto entry = options.stages.find(stage.key);
     json alternatives = json::array();
     for (const StageInfo::Alternative& one : stage.alternatives) {
-      const bool is_default = &one == &stage.alternatives.front();
       alternatives.push_back({{"name", one.name},
                               {"meaning", one.meaning},
-                              {"default", is_default},
-                              {"chosen", entry != options.stages.end() ? entry->second == one.name : is_default},
+                              {"default", &one == &stage.alternatives.front()},
+                              {"chosen", one.name == chosen_name(stage, options)},
                               {"options", options_json(one.options)}});
     }
     stages.push_back({{"key", stage.key},
@@ -75,19 +73,14 @@ json field_json(const FieldModel& field) {
 
 /// Without what says the same as the robot file, or as the default where that says nothing.
 VisionChanges really_changed(VisionChanges changes, const RobotSetup& setup) {
-  RobotSetup as_filed = setup;
-  apply_changes(as_filed, {});
-  const auto values = option_values(as_filed.vision.options);
-  const auto filed_stage = [&](const auto& stage) {
-    const auto entry = as_filed.vision.options.stages.find(stage.key);
-    return entry != as_filed.vision.options.stages.end() ? entry->second : stage.alternatives.front().name;
-  };
+  const VisionOptions filed = vision_options(setup.settings, setup.registry);
+  const auto values = option_values(filed);
   std::erase_if(changes, [&](const auto& change) {
     const auto& [key, setting] = change;
     if (const auto value = values.find(key); value != values.end()) return setting.number() == value->second;
     bool is_same = false;
     setup.registry.for_each(
-        [&](const auto& stage) { is_same |= stage.key == key && setting.text == filed_stage(stage); });
+        [&](const auto& stage) { is_same |= stage.key == key && setting.text == chosen_name(stage, filed); });
     return is_same;
   });
   return changes;

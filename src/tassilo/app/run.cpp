@@ -108,15 +108,13 @@ class Run {
     if (is_live()) std::fflush(report_);  // somebody watches
     RunSinks sinks(arguments_);
     progress_.emplace(!arguments_.quiet && live_ == nullptr, info_.frame_count);
+    const auto load_checked = [this](const VisionChanges& changes) { return checked(load(changes)); };
     if (arguments_.watch)
-      watch_.emplace(*configuration_, [this] {
+      watch_.emplace(*configuration_, [this, load_checked] {
         // One load after the other: what is chosen in a browser meanwhile is not lost by an older one.
-        const auto with = [this](const VisionChanges& changes) { return checked(load(changes)); };
-        return live_ != nullptr ? live_->load_with_changes(with) : with({});
+        return live_ != nullptr ? live_->load_with_changes(load_checked) : load_checked({});
       });
-    if (live_ != nullptr)
-      live_->begin(name(), info_.description, arguments_.every, configuration_,
-                   [this](const VisionChanges& changes) { return checked(load(changes)); });
+    if (live_ != nullptr) live_->begin(name(), info_.description, arguments_.every, configuration_, load_checked);
 
     std::optional<Error> damage;
     const auto begin = Clock::now();

@@ -66,7 +66,6 @@ Command add_serve(CLI::App& program) {
       "run, and show it to browsers: live picture, scene, times; stages exchanged while it runs, changed files "
       "taken over; files are played in real time, again and again unless something is written of them");
   auto arguments = std::make_shared<ServeArguments>();
-  arguments->run.watch = true;
   add_run_options(*command, arguments->run);
   command->add_option("--address", arguments->web.address, "IP address to listen at; beyond 127.0.0.1 with a token")
       ->capture_default_str();

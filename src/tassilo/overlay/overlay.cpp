@@ -13,6 +13,7 @@
 #include "tassilo/overlay/internal/floor_view.h"
 #include "tassilo/overlay/internal/label_layout.h"
 #include "tassilo/overlay/internal/text.h"
+#include "tassilo/region/raster.h"
 
 namespace tassilo {
 namespace {
@@ -81,13 +82,7 @@ std::vector<std::uint8_t> tinted_pixels(const FrameView& frame, const Scene& sce
 
 /// One step by itself.
 void draw_step(Canvas& canvas, const Layout& layout, const StepPicture& step, int columns, int rows) {
-  const auto width = static_cast<std::size_t>(columns);
-  std::vector<std::uint8_t> inside(width * static_cast<std::size_t>(rows), 0);
-  for (const PixelRun& run : step.region.runs()) {
-    if (run.row < 0 || run.row >= rows) continue;
-    for (int c = std::max<int>(run.begin, 0); c < std::min<int>(run.end, columns); ++c)
-      inside[static_cast<std::size_t>(run.row) * width + static_cast<std::size_t>(c)] = 255;
-  }
+  const std::vector<std::uint8_t> inside = to_mask(step.region, {0, 0, columns, rows});
   const Rect& all = layout.image;
   const std::vector<std::vector<CanvasPoint>> everything{
       {{all.x, all.y}, {all.right(), all.y}, {all.right(), all.bottom()}, {all.x, all.bottom()}}};

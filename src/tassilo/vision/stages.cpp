@@ -73,13 +73,12 @@ Function made_by(const Stage<Function>& stage, const Alternative<Function>& alte
 
 template <class Function>
 Function chosen(const Stage<Function>& stage, const VisionOptions& options) {
-  const auto entry = options.stages.find(stage.key);
-  if (entry == options.stages.end()) return made_by(stage, stage.alternatives.front(), options);
-  const auto found = std::ranges::find(stage.alternatives, entry->second, &Alternative<Function>::name);
+  const std::string& name = chosen_name(stage, options);
+  const auto found = std::ranges::find(stage.alternatives, name, &Alternative<Function>::name);
   if (found != stage.alternatives.end()) return made_by(stage, *found, options);
   std::vector<std::string_view> names;
   for (const auto& alternative : stage.alternatives) names.push_back(alternative.name);
-  throw Error("vision." + std::string(stage.key), "is " + shown(entry->second) + ", must be " + joined(names));
+  throw Error("vision." + std::string(stage.key), "is " + shown(name) + ", must be " + joined(names));
 }
 
 }  // namespace

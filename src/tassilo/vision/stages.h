@@ -87,6 +87,14 @@ StageRegistry built_in_stages();
 /// Throws Error naming `source` when a name is none or taken twice, an option's key is taken, or a `make` is missing.
 void check_stages(const StageRegistry& registry, const std::string& source);
 
+/// The name of a stage's chosen alternative, whether it has one of that name or not: what the options say, else the
+/// first. Of a Stage or a StageInfo that has alternatives.
+template <class AnyStage>
+const std::string& chosen_name(const AnyStage& stage, const VisionOptions& options) {
+  const auto entry = options.stages.find(stage.key);
+  return entry != options.stages.end() ? entry->second : stage.alternatives.front().name;
+}
+
 /// The chosen alternative of each stage.
 struct Stages {
   std::function<BallSearch(const View&)> balls;
