@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <optional>
 #include <sstream>
@@ -151,23 +150,52 @@ std::vector<YuvPixel> pixels_of(const FrameView& frame, const Region& region) {
   return pixels;
 }
 
-void TrainingOptions::check() const {
-  const auto in = [](const char* name, double value, double low, double high) {
-    if (value >= low && value <= high) return;
-    std::ostringstream reason;
-    reason << "is " << value << ", must be in [" << low << ", " << high << "]";
-    throw Error(std::string("train.") + name, reason.str());
+std::span<const TrainingNumber> training_numbers() {
+  using T = TrainingOptions;
+  static constexpr std::array kNumbers{
+      TrainingNumber{"outlier_share", "1", 0, 0.2, "share of a class's pixels that may be wrong", &T::outlier_share},
+      TrainingNumber{"brightness_outlier_share", "1", 0, 0.2,
+                     "share of a class's pixels at either end of its brightness that are mixed or in deep shade",
+                     &T::brightness_outlier_share},
+      TrainingNumber{"min_cluster_share", "1", 0, 0.5, "a separate cluster with a smaller share of the pixels is a slip",
+                     &T::min_cluster_share},
+      TrainingNumber{"closing_px", "step", 1, 31, "closing of the UV cluster", nullptr, &T::closing_px},
+      TrainingNumber{"opening_px", "step", 1, 15, "opening of the UV cluster", nullptr, &T::opening_px},
+      TrainingNumber{"noise_margin", "step", 0, 20, "margin around the UV cluster", &T::noise_margin},
+      TrainingNumber{"darkest_shade", "1", 0.1, 1, "darkest shade relative to the samples", &T::darkest_shade},
+      TrainingNumber{"brightest_light", "1", 1, 2, "brightest light relative to the samples", &T::brightest_light},
+      TrainingNumber{"white_reach", "1", 0, 0.5, "share of the gray between black and white that is white",
+                     &T::white_reach},
+      TrainingNumber{"black_reach", "1", 0, 0.5, "share of the gray between black and white that is black",
+                     &T::black_reach},
   };
-  in("outlier_share", outlier_share, 0, 0.2);
-  in("brightness_outlier_share", brightness_outlier_share, 0, 0.2);
-  in("min_cluster_share", min_cluster_share, 0, 0.5);
-  in("closing_px", closing_px, 1, 31);
-  in("opening_px", opening_px, 1, 15);
-  in("noise_margin", noise_margin, 0, 20);
-  in("darkest_shade", darkest_shade, 0.1, 1);
-  in("brightest_light", brightest_light, 1, 2);
-  in("white_reach", white_reach, 0, 0.5);
-  in("black_reach", black_reach, 0, 0.5);
+  return kNumbers;
+}
+
+void TrainingNumber::set(TrainingOptions& options, double value) const {
+  const bool is_in_range = value >= low && value <= high;
+  if (!is_in_range || (whole != nullptr && value != std::floor(value))) {
+    std::ostringstream reason;
+    reason << "is " << value << ", must be " << (is_in_range ? "a whole number " : "") << "in [" << low << ", " << high
+           << "]";
+    throw Error("train." + std::string(key), reason.str());
+  }
+  if (real != nullptr)
+    options.*real = value;
+  else
+    options.*whole = static_cast<int>(value);
+}
+
+void TrainingOptions::check() const {
+  TrainingOptions checked = *this;
+  for (const TrainingNumber& number : training_numbers()) number.set(checked, number.of(*this));
+  for (const ColorClass color : kColorClasses) {
+    const auto& interval = brightness[static_cast<std::size_t>(class_index(color))];
+    if (interval && !(0 <= interval->low && interval->low <= interval->high && interval->high <= 255))
+      throw Error("train.brightness." + std::string(to_string(color)),
+                  "is [" + std::to_string(interval->low) + ", " + std::to_string(interval->high) +
+                      "], must be [low, high] in 0..255");
+  }
 }
 
 ColorTable train_colors(const std::vector<ColorSample>& samples, ColorRange range, const TrainingOptions& options) {
@@ -220,6 +248,8 @@ ColorTable train_colors(const std::vector<ColorSample>& samples, ColorRange rang
     if (white && none->bright < white->dark)
       interval(ColorClass::white).low = static_cast<int>((white->dark + none->bright) / 2) + 1;
   }
+  for (std::size_t k = 0; k < table.brightness.size(); ++k)
+    if (options.brightness[k]) table.brightness[k] = *options.brightness[k];
   return table;
 }
 

@@ -167,5 +167,31 @@ TEST(DistanceTo, EqualsBruteForce) {
   }
 }
 
+TEST(TrainColors, BrightnessSetByHandIsTaken) {
+  std::mt19937 random(9);
+  const auto samples = samples_of_all(0.8, random);
+  TrainingOptions options;
+  options.brightness[static_cast<std::size_t>(class_index(ColorClass::green))] = {40, 80};
+  ColorTable expected = train_colors(samples, ColorRange::limited);
+  expected.brightness[static_cast<std::size_t>(class_index(ColorClass::green))] = {40, 80};
+  EXPECT_EQ(train_colors(samples, ColorRange::limited, options), expected);
+}
+
+TEST(TrainingOptions, NumbersKnowTheirRange) {
+  for (const TrainingNumber& number : training_numbers()) {
+    TrainingOptions options;
+    EXPECT_NO_THROW(number.set(options, number.low));
+    EXPECT_EQ(number.of(options), number.low) << number.key;
+    EXPECT_THROW(number.set(options, number.high + 0.01), Error) << number.key;
+    EXPECT_THROW(number.set(options, std::nan("")), Error) << number.key;
+    EXPECT_EQ(number.of(options), number.low) << number.key;
+    if (number.whole == nullptr) continue;
+    EXPECT_THROW(number.set(options, number.low + 0.5), Error) << number.key;
+  }
+  TrainingOptions options;
+  options.brightness[0] = {9, 8};
+  EXPECT_THROW(options.check(), Error);
+}
+
 }  // namespace
 }  // namespace tassilo
