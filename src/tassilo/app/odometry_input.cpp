@@ -39,7 +39,7 @@ void OdometryInput::add(const std::string& line) {
   ++lines_;
   try {
     const OdometrySample sample =
-        read_odometry_line(line, fmt::format("{}:{}", location_ == "-" ? "standard input" : location_, lines_));
+        read_odometry_line(line, fmt::format("{}:{}", location_ == "-" ? "standard input" : location_, lines_)).sample;
     odometry_->add(sample);
     newest_ = std::max(newest_.value_or(sample.t), sample.t);
   } catch (const Error& refusal) {

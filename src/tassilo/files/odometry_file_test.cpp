@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <random>
+
 #include "tassilo/files/internal/test_data.h"
 #include "tassilo/files/internal/test_folder.h"
 #include "tassilo/files/internal/test_message.h"
@@ -42,7 +45,7 @@ TEST(OdometryFile, MalformedLinesAreNamed) {
   };
   const Case cases[] = {
       {R"({"t": 1, "x": 0, "y": 0})", "key 'theta' is missing"},
-      {R"({"t": 1, "x": 0, "y": 0, "heading": 0})", "unknown key 'heading', must be t, x, y or theta"},
+      {R"({"t": 1, "x": 0, "y": 0, "heading": 0})", "unknown key 'heading', must be t, x, y, theta or frame"},
       {R"({"t": 1, "t": 2, "x": 0, "y": 0, "theta": 0})", "key 't' appears twice, first at PLACE"},
       {R"({"t": 1, "x": null, "y": 0, "theta": 0})", "x is empty, must be a finite number"},
       {R"({"t": 1, "x": "0", "y": 0, "theta": 0})", "x is the text '0', must be a finite number"},
@@ -69,6 +72,21 @@ TEST(OdometryFile, SharedOdometryLoads) {
     ASSERT_FALSE(samples.empty());
     EXPECT_EQ(samples.front(), OdometrySample{});
   }
+}
+
+TEST(OdometryFile, WrittenLinesReadBackToTheLastBit) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> any(-10, 10);
+  for (int seed = 0; seed < 200; ++seed) {
+    SCOPED_TRACE(seed);
+    OdometryLine line{{1.7e9 + any(random), any(random), seed % 3 == 0 ? -0. : any(random), any(random)}, std::nullopt};
+    if (seed % 2 == 0) line.frame = seed;
+    const OdometryLine read = read_odometry_line(odometry_line(line), "line");
+    EXPECT_EQ(read, line);
+    EXPECT_EQ(std::signbit(read.sample.y), std::signbit(line.sample.y));
+  }
+  EXPECT_THAT(message_of([] { read_odometry_line(R"({"t":0,"x":0,"y":0,"theta":0,"frame":-1})", "line"); }),
+              testing::HasSubstr("frame is '-1', must be >= 0"));
 }
 
 }  // namespace

@@ -91,9 +91,9 @@ TEST(SamplesFile, MalformedFilesAreRefused) {
       {"  value: 3\n", "  value: 3\n  polygon: [[1, 2], [3, 4], [5, 6]]\n",
        "s:4:3: [2] must have one of rectangle, polygon, stroke or mask"},
       {", radius: 2.5", "", "s:8:3: key '[3].radius' is missing"},
-      {"radius: 2.5", "radius: -1", "s:8:74: [3].radius is '-1', must be >= 0 and <= 1000"},
+      {"radius: 2.5", "radius: -1", "s:8:75: [3].radius is '-1', must be >= 0 and <= 1000"},
       {"stroke: [[3, 4], [-1.5, 7]]", "rectangle: [1, 2, 3, 4]",
-       "s:8:70: [3].radius stands without a stroke, must go with one"},
+       "s:8:71: [3].radius stands without a stroke, must go with one"},
   };
   for (const Case& c : cases)
     EXPECT_THAT(message_of([&] { samples_from_yaml(spoiled(kSamples, c.from, c.to), "s"); }),

@@ -15,29 +15,19 @@ extern "C" {
 
 #include "tassilo/base/contract.h"
 #include "tassilo/base/error.h"
+#include "tassilo/record/internal/av_owned.h"
 
 namespace tassilo {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct AvFree {
-  void operator()(AVCodecContext* codec) const { avcodec_free_context(&codec); }
-  void operator()(AVFormatContext* output) const {
-    if (output->pb != nullptr) avio_closep(&output->pb);
-    avformat_free_context(output);
-  }
-  void operator()(AVFrame* frame) const { av_frame_free(&frame); }
-  void operator()(AVPacket* packet) const { av_packet_free(&packet); }
+struct ScalerFree {
   void operator()(SwsContext* scaler) const { sws_freeContext(scaler); }
 };
-template <class T>
-using Av = std::unique_ptr<T, AvFree>;
-
-template <class T>
-Av<T> owned(T* pointer) {
-  if (pointer == nullptr) throw std::bad_alloc();
-  return Av<T>(pointer);
+std::unique_ptr<SwsContext, ScalerFree> owned_scaler(SwsContext* scaler) {
+  if (scaler == nullptr) throw std::bad_alloc();
+  return std::unique_ptr<SwsContext, ScalerFree>(scaler);
 }
 
 int even(int size) { return size + size % 2; }
@@ -54,11 +44,11 @@ class VideoWriter::Encoder {
         part_(fs::path(target).replace_extension(".part" + fs::path(target).extension().string()).string()),
         width_(first.width),
         height_(first.height),
-        packet_(owned(av_packet_alloc())),
-        frame_(owned(av_frame_alloc())),
-        scaler_(owned(sws_getContext(even(width_), even(height_), AV_PIX_FMT_RGB24, even(width_), even(height_),
-                                     AV_PIX_FMT_YUV420P, SWS_BICUBIC | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INT, nullptr,
-                                     nullptr, nullptr))) {
+        packet_(av_owned(av_packet_alloc())),
+        frame_(av_owned(av_frame_alloc())),
+        scaler_(owned_scaler(sws_getContext(even(width_), even(height_), AV_PIX_FMT_RGB24, even(width_), even(height_),
+                                            AV_PIX_FMT_YUV420P, SWS_BICUBIC | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INT,
+                                            nullptr, nullptr, nullptr))) {
     open_codec(options);
     open_file();
     padded_.resize(3 * static_cast<std::size_t>(even(width_)) * static_cast<std::size_t>(even(height_)));
@@ -104,7 +94,7 @@ class VideoWriter::Encoder {
     const AVCodec* h264 = avcodec_find_encoder_by_name("libx264");
     const AVCodec* encoder = h264 ? h264 : avcodec_find_encoder(AV_CODEC_ID_MPEG4);
     if (encoder == nullptr) throw Error(target_, "cannot be encoded: FFmpeg has neither libx264 nor MPEG-4 here");
-    codec_ = owned(avcodec_alloc_context3(encoder));
+    codec_ = av_owned(avcodec_alloc_context3(encoder));
     codec_->width = even(width_);
     codec_->height = even(height_);
     codec_->pix_fmt = AV_PIX_FMT_YUV420P;
@@ -129,7 +119,7 @@ class VideoWriter::Encoder {
   void open_file() {
     AVFormatContext* output = nullptr;
     must(avformat_alloc_output_context2(&output, nullptr, nullptr, part_.c_str()), "be written");
-    output_ = owned(output);
+    output_ = av_owned(output);
     if ((output->oformat->flags & AVFMT_GLOBALHEADER) != 0) codec_->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
     must(avcodec_open2(codec_.get(), nullptr, nullptr), "be encoded");
     stream_ = avformat_new_stream(output, nullptr);
@@ -168,7 +158,7 @@ class VideoWriter::Encoder {
   int width_, height_;
   Av<AVPacket> packet_;
   Av<AVFrame> frame_;
-  Av<SwsContext> scaler_;
+  std::unique_ptr<SwsContext, ScalerFree> scaler_;
   Av<AVCodecContext> codec_;
   Av<AVFormatContext> output_;
   AVStream* stream_ = nullptr;

@@ -93,6 +93,8 @@ class CameraReader final : public FrameReader {
     return info;
   }
 
+  std::optional<double> now() const override { return camera_.now(); }
+
   CameraCounts counts() const override {
     CameraCounts counts = bulletin_.counts();
     counts.broken += undecodable_;

@@ -33,7 +33,7 @@ std::unique_ptr<FrameReader> make_reader(const SourceOptions& options) {
     return make_raw_reader(options);
   }
   if (is_folder || (is_file && is_image_file(location))) return make_image_reader(options);
-  return make_video_reader(options);
+  return is_file ? make_stamped_reader(make_video_reader(options), location) : make_video_reader(options);
 }
 
 }  // namespace
@@ -89,6 +89,7 @@ std::optional<Frame> FrameSource::next() {
 }
 
 CameraCounts FrameSource::camera_counts() const { return reader_->counts(); }
+std::optional<double> FrameSource::now() const { return reader_->now(); }
 
 FrameSource open_source(const SourceOptions& options) {
   options.check();

@@ -69,7 +69,8 @@ class FrameReader;
 /// layouts (4:4:4, 4:1:1, 10 bit, ...) become yuv422p of 8 bit with their range kept, RGB becomes BT.601 yuv422p in
 /// `images_range`; alpha is ignored. Range: as tagged, else full for JPEG and yuvj formats, else limited. Values tagged
 /// BT.709 are not converted; the description says so.
-/// Time: the stored time stamps, each frame its own; constant rate only where the source has none.
+/// Time: the stored time stamps, each frame its own; constant rate only where the source has none. Where a video file
+/// has VIDEO.frames.jsonl beside it, as recordings do, times and indices are those of that file.
 ///
 /// A camera is grabbed by a thread of its own, and `next` gives the newest frame, whatever was missed meanwhile: it
 /// waits for one through stalls and absences, which `camera_news` tells. Its pixels are the driver's buffers; who keeps
@@ -90,6 +91,8 @@ class FrameSource {
   const SourceInfo& info() const { return info_; }
   /// What a camera did not deliver so far; all 0 for other sources.
   CameraCounts camera_counts() const;
+  /// What a camera's clock shows now, the clock of its frames' `t`; nothing for other sources. [s]
+  std::optional<double> now() const;
 
  private:
   std::unique_ptr<FrameReader> reader_;

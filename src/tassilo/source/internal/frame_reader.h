@@ -19,6 +19,7 @@ class FrameReader {
   virtual SourceInfo info() const = 0;
   /// Of a camera.
   virtual CameraCounts counts() const { return {}; }
+  virtual std::optional<double> now() const { return std::nullopt; }
 };
 
 inline constexpr int kMaxFrameSize = 32767;  ///< Runs have 16-bit coordinates. [px]
@@ -33,6 +34,8 @@ std::unique_ptr<FrameReader> make_raw_reader(const SourceOptions& options);
 /// `folder`: all its images in natural order; else one image file.
 std::unique_ptr<FrameReader> make_image_reader(const SourceOptions& options);
 std::unique_ptr<FrameReader> make_video_reader(const SourceOptions& options);
+/// `video`, a file at `location`, with the stamps of the file beside it (see stamps_file_of); as it is without one.
+std::unique_ptr<FrameReader> make_stamped_reader(std::unique_ptr<FrameReader> video, const std::string& location);
 /// A camera, see is_camera; `calls` outlives the reader and all its frames.
 std::unique_ptr<FrameReader> make_camera_reader(const SourceOptions& options, SystemCalls& calls);
 

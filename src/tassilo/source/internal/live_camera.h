@@ -44,6 +44,8 @@ class LiveCamera {
   CameraCounts counts() const { return counts_; }
   std::string description() const;
   const AgreedFormat& format() const { return format_; }
+  /// On the clock of the frames. Any thread. [s]
+  double now() const { return epoch_from_monotonic_ + calls_.monotonic_s(); }
 
  private:
   void look_for_it(int patience_ms);
