@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 struct ServeArguments {
   RunArguments run;
   WebOptions web;
-  std::string pages;
+  std::string pages, samples;
 };
 
 /// The first folder of pages that is there: what the environment says, beside the installed program, where this was
@@ -44,7 +44,7 @@ int serve(const ServeArguments& arguments) {
   web.pages = arguments.pages.empty() ? pages_folder() : fs::path(arguments.pages);
   // Who can reach it from elsewhere must have been told.
   if (!is_loopback(web.address) && web.token.empty()) web.token = new_token();
-  LiveView live(web, arguments.run.robot);
+  LiveView live(web, arguments.run.robot, arguments.samples);
   if (!arguments.run.quiet) {
     fmt::print("{} {} {}{}; Ctrl-C ends\n", web.pages.empty() ? "serving at" : "open", live.url(),
                web.pages.empty() ? "for programs" : "in a browser",
@@ -80,6 +80,8 @@ Command add_serve(CLI::App& program) {
             std::string::npos;
         return is_plain && token.size() >= least ? "" : "must be 16 or more of a-z, A-Z, 0-9, - and _";
       });
+  command->add_option("--samples", arguments->samples,
+                      "samples.yaml of the color training, read and written (default: beside the color table)");
   command->add_option("--pages", arguments->pages, "folder with pages, instead of the installed ones")
       ->check(CLI::ExistingDirectory);
   command->callback([arguments] {

@@ -84,16 +84,16 @@ std::string today() {
 
 }  // namespace
 
-Region region_of(const TrainingSample& sample, const FrameView& frame, const std::string& place) {
+Region sample_region(const SampleShape& shape, const FrameView& frame, const std::string& place) {
   // What is drawn beyond the image is counted for a warning, but not without end.
   const PixelBox around{-frame.width(), -frame.height(), std::min(2 * frame.width(), kMaxCoordinate),
                         std::min(2 * frame.height(), kMaxCoordinate)};
-  if (const auto* box = std::get_if<PixelBox>(&sample.shape)) return Region::from_box(*box);
-  if (const auto* polygon = std::get_if<std::vector<PixelPoint>>(&sample.shape))
+  if (const auto* box = std::get_if<PixelBox>(&shape)) return Region::from_box(*box);
+  if (const auto* polygon = std::get_if<std::vector<PixelPoint>>(&shape))
     return region_from_polygon(*polygon, around);
-  if (const auto* stroke = std::get_if<SampleStroke>(&sample.shape))
+  if (const auto* stroke = std::get_if<SampleStroke>(&shape))
     return region_from_stroke(stroke->way, stroke->radius, around);
-  const auto& mask = std::get<SampleMask>(sample.shape);
+  const auto& mask = std::get<SampleMask>(shape);
   const GrayImage pixels = read_at(place, [&] { return read_png_gray(mask.path); });
   if (pixels.width != frame.width() || pixels.height != frame.height())
     throw Error(place, fmt::format("mask {} is {}x{}, its image is {}x{}", mask.path.string(), pixels.width,
@@ -136,7 +136,7 @@ LoadedSamples load_samples(const std::string& file, ColorRange images_range, con
       for (const TrainingSample& sample : list) {
         if (sample.image != image || sample.frame != indices[i]) continue;
         const std::string place = fmt::format("{}:{}", file, sample.line);
-        Region region = region_of(sample, frame.view, place);
+        Region region = sample_region(sample.shape, frame.view, place);
         const auto whole = area(region);
         std::vector<YuvPixel> pixels = pixels_of(frame.view, region);
         if (pixels.empty()) {

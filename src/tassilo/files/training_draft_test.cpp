@@ -43,7 +43,7 @@ TEST(TrainingDraft, MalformedDraftsAreRefused) {
       {"[20,200]", "[200,20]", "train.brightness.red: is [200, 20], must be [low, high]"},
       {R"("class":"red")", R"("class":"rot")", "samples[0].class is 'rot'"},
       {R"("rectangle":[0,0,4,4])", R"("polygon":[[0,0],[1,1]])", "samples[0].polygon has 2 values"},
-      {R"("rectangle":[0,0,4,4])", R"("lasso":[[0,0],[1,1]])", "unknown key 'samples[0].lasso'"},
+      {R"("rectangle":[0,0,4,4])", R"("lasso":[[0,0],[1,1]])", "unknown key 'lasso'"},
   };
   for (const Case& c : cases)
     EXPECT_THAT(message_of([&] { draft_from_json(spoiled(good, c.from, c.to), "request"); }),
