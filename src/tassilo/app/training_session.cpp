@@ -180,7 +180,9 @@ std::vector<ColorSample> TrainingSession::copied_samples() const {
 
 void TrainingSession::train() {
   const ClassPriority priority = table_.priority;
-  table_ = train_colors(copied_samples(), range_, options_);
+  std::vector<std::shared_ptr<const ColorSample>> samples;
+  for (const auto& one : draft_) samples.push_back(one->pixels);
+  table_ = trained_(samples, range_, options_);
   table_.priority = priority;
 }
 

@@ -121,6 +121,7 @@ class TrainingSession {
   std::int64_t version_ = 0, saved_version_ = 0;
   std::vector<std::shared_ptr<const Drawn>> draft_;
   TrainingOptions options_;
+  IncrementalTraining trained_;
   ColorTable table_;
   std::optional<std::int64_t> judged_version_;
   ColorQuality quality_;
