@@ -1,3 +1,4 @@
+import { ColorsSession } from "./colors/colors_session";
 import { Channel, browser_world } from "./link/channel";
 import { type Api, server_api, type ServerState } from "./link/api";
 import { type Condition, condition_of } from "./link/condition";
@@ -28,6 +29,7 @@ export class Session {
   readonly server = new Observable<ServerState | null>(null);
   readonly condition = new Observable<Condition>({ tone: "warning", text: "connecting" });
   readonly stages: StagesModel;
+  readonly colors = new ColorsSession(this.live.frozen);
   private trouble = "";
   private decoded: Picture | null = null;
   private readonly decoder = new NewestDecoder<Blob, Picture>(decode, (picture) => {
@@ -72,6 +74,7 @@ export class Session {
   retry(): void {
     this.scene_channel.retry();
     this.picture_channel.retry();
+    this.colors.pictures.retry();
   }
 
   toggle_freeze(): void {
