@@ -57,15 +57,21 @@ function each_pixel(sample, bytes, use) {
   }
 }
 
-/// Cells within `reach` of one with `value` have it too.
+/// Cells within `reach` of one with `value`, in a square, have it too.
 function spread(cells, reach, value) {
   let from = cells;
-  for (const stride of [1, 256]) {
+  for (const [stride, line] of [[1, 256], [256, 1]]) {
     const to = new Uint8Array(65536).fill(1 - value);
-    for (let i = 0; i < 65536; ++i) {
-      if (from[i] !== value) continue;
-      const place = stride === 1 ? i & 255 : i >> 8;
-      for (let d = -Math.min(reach, place); d <= Math.min(reach, 255 - place); ++d) to[i + d * stride] = value;
+    for (let n = 0, begin = 0; n < 256; ++n, begin += line) {
+      // The last place that `value` reaches, and then backwards the same.
+      for (let i = 0, last = -1000; i < 256; ++i) {
+        if (from[begin + i * stride] === value) last = i;
+        if (i - last <= reach) to[begin + i * stride] = value;
+      }
+      for (let i = 255, last = 1000; i >= 0; --i) {
+        if (from[begin + i * stride] === value) last = i;
+        if (last - i <= reach) to[begin + i * stride] = value;
+      }
     }
     from = to;
   }
@@ -120,9 +126,10 @@ export class MockTraining {
       const least = Math.max(1, this.value("outlier_share") * count.pixels / 20);
       const margin = Math.round(this.value("noise_margin"));
       const closing = this.value("closing_px") >> 1;
-      let cells = Uint8Array.from(count.cells, (n) => (n >= least ? 1 : 0));
+      let cells = new Uint8Array(65536);
+      for (let i = 0; i < 65536; ++i) if (count.cells[i] >= least) cells[i] = 1;
       cells = spread(spread(cells, closing + margin, 1), closing, 0);
-      cells.forEach((set, i) => { if (set) chroma[i] |= 1 << (label - 1); });
+      for (let i = 0; i < 65536; ++i) if (cells[i] === 1) chroma[i] |= 1 << (label - 1);
       brightness[name] = this.draft.brightness[name] ?? this.trained_brightness(count);
     });
     this.table = { chroma, brightness, priority, range: "limited" };
@@ -142,11 +149,14 @@ export class MockTraining {
 
   result(seen) {
     const count = this.counts[seen];
-    const most = count ? Math.max(...count.cells) : 0;
-    const told_seen = count && {
-      class: seen, most, brightness: [...count.y],
-      density: Buffer.from(count.cells.map((n) => (n === 0 ? 0 : most < 2 ? 255 : 1 + Math.round((254 * Math.log(n)) / Math.log(most))))).toString("base64"),
-    };
+    let most = 0;
+    for (const n of count?.cells ?? []) if (n > most) most = n;
+    const density = Buffer.alloc(65536);
+    for (let i = 0; most > 0 && i < 65536; ++i) {
+      const n = count.cells[i];
+      if (n > 0) density[i] = most < 2 ? 255 : 1 + Math.round((254 * Math.log(n)) / Math.log(most));
+    }
+    const told_seen = count && { class: seen, most, brightness: [...count.y], density: density.toString("base64") };
     return {
       version: this.version, table: this.told_table(this.table), seen: told_seen ?? null, warnings: this.warnings(),
       classes: classes.map((name) => ({ class: name, samples: this.counts[name].samples, pixels: this.counts[name].pixels })),

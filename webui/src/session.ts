@@ -31,6 +31,7 @@ export class Session {
   readonly stages: StagesModel;
   readonly colors = new ColorsSession(this.live.frozen);
   private trouble = "";
+  private pictures_wanted = true;
   private decoded: Picture | null = null;
   private readonly decoder = new NewestDecoder<Blob, Picture>(decode, (picture) => {
     this.decoded?.bitmap.close();
@@ -65,10 +66,18 @@ export class Session {
     setInterval(() => this.judge(), 250);
     addEventListener("online", () => this.retry());
     // Nobody looks: the radio link has better things to carry, and the server need not draw.
-    document.addEventListener("visibilitychange", () => {
-      if (document.hidden) this.picture_channel.stop();
-      else this.picture_channel.start();
-    });
+    document.addEventListener("visibilitychange", () => this.listen_to_pictures());
+  }
+
+  /// Pages without the annotated picture say so.
+  want_pictures(wanted: boolean): void {
+    this.pictures_wanted = wanted;
+    this.listen_to_pictures();
+  }
+
+  private listen_to_pictures(): void {
+    if (document.hidden || !this.pictures_wanted) this.picture_channel.stop();
+    else this.picture_channel.start();
   }
 
   retry(): void {

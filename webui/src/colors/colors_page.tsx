@@ -20,15 +20,17 @@ export function ColorsPage({ session }: { session: Session }) {
   const { colors } = session;
   useEffect(() => {
     colors.open();
+    session.want_pictures(false);
     const key = (event: KeyboardEvent): void => {
       if (!event.defaultPrevented && press(colors, event)) event.preventDefault();
     };
     addEventListener("keydown", key);
     return () => {
       removeEventListener("keydown", key);
+      session.want_pictures(true);
       colors.close();
     };
-  }, [colors]);
+  }, [session]);
   return (
     <div class="colors">
       <h1 class="unseen">Colors</h1>
@@ -36,20 +38,18 @@ export function ColorsPage({ session }: { session: Session }) {
       <div class="work">
         <PicturePane colors={colors} />
         <FilmStrip colors={colors} />
+        <LivePreview colors={colors} />
+        <Parameters colors={colors} />
       </div>
       <div class="judge">
         <ClassTable colors={colors} />
         <Chosen colors={colors} />
-        <LivePreview colors={colors} />
-      </div>
-      <div class="below">
-        <Parameters colors={colors} />
         <SavePane colors={colors} />
-        <details class="help">
-          <summary>Keys</summary>
-          <dl>{key_help.map(([keys, what]) => <div key={keys}><dt><kbd>{keys}</kbd></dt><dd>{what}</dd></div>)}</dl>
-        </details>
       </div>
+      <details class="help">
+        <summary>Keys</summary>
+        <dl>{key_help.map(([keys, what]) => <div key={keys}><dt><kbd>{keys}</kbd></dt><dd>{what}</dd></div>)}</dl>
+      </details>
     </div>
   );
 }

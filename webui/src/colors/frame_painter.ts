@@ -21,6 +21,9 @@ export class FramePainter {
   private painted: Wanted | null = null;
   private labels: Uint8Array = new Uint8Array(0);
   private labels_in_use: Uint8Array = new Uint8Array(0);
+  /// The picture itself under the classes, which change more often.
+  private base = new Uint32Array(0);
+  private base_of: YuvFrame | null = null;
   /// By the difference picture; null for others.
   changed: number | null = null;
 
@@ -48,10 +51,19 @@ export class FramePainter {
     this.labels = classifier.frame(frame, this.labels);
     if (mode === "labels") return paint_labels(this.labels, out);
     if (mode === "overlay" || in_use === null) {
-      paint_rgb(frame, out);
+      this.paint_base(frame, out);
       return cover_labels(this.labels, opacity, out);
     }
     this.labels_in_use = in_use.frame(frame, this.labels_in_use);
     this.changed = paint_difference(frame, this.labels_in_use, this.labels, out);
+  }
+
+  private paint_base(frame: YuvFrame, out: Uint32Array): void {
+    if (this.base_of !== frame) {
+      if (this.base.length !== out.length) this.base = new Uint32Array(out.length);
+      paint_rgb(frame, this.base);
+      this.base_of = frame;
+    }
+    out.set(this.base);
   }
 }

@@ -35,7 +35,9 @@ export class PictureCanvas {
     this.context = canvas.getContext("2d", { alpha: false })!;
     const { pictures, training } = colors;
     const redraw = (): void => this.request();
-    for (const source of [pictures.live, pictures.shown, pictures.loaded, training.view, colors.mode, colors.opacity, colors.view, colors.begun,
+    // What came of a sample is awaited: it is drawn at once, before anything else on the page.
+    this.ends.push(training.view.subscribe(() => (training.view.value.classifier === this.measured ? this.request() : this.draw())));
+    for (const source of [pictures.live, pictures.shown, pictures.loaded, colors.mode, colors.opacity, colors.view, colors.begun,
                           colors.selected, colors.cursor, colors.tool, colors.radius]) {
       this.ends.push(source.subscribe(redraw));
     }
@@ -182,6 +184,7 @@ export class PictureCanvas {
     if (this.colors.pictures.frame === null) return;
     const at = this.canvas_point(event);
     const finger = this.fingers.get(event.pointerId);
+    this.colors.cursor.set(null);
     this.point_at(at);
     if (finger === undefined) return this.request();
     if (this.fingers.size === 2) this.pinch(finger, at);

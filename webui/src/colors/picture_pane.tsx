@@ -92,7 +92,7 @@ function PictureWords({ colors }: { colors: ColorsSession }) {
   const name = shown.kind === "kept" ? (training?.images.find(({ id }) => id === shown.id)?.name ?? shown.id) : "";
   return (
     <>
-      <span class={`what ${shown.kind}`}>{shown.kind === "live" ? "live" : shown.kind === "keeping" ? "keeping" : name}</span>
+      <span class={`what ${shown.kind === "live" ? "is-live" : ""}`}>{shown.kind === "live" ? "live" : shown.kind === "keeping" ? "keeping" : name}</span>
       {!is_there && <p class="no-picture">{shown.kind === "live" ? "no live picture yet" : "the picture is on its way"}</p>}
     </>
   );

@@ -1,6 +1,6 @@
 import { type Affine, apply } from "../canvas/transform";
 import type { Point } from "../scene";
-import { css_color, label_of, line_color, type ColorClass } from "./color_class";
+import { css_color, label_of, line_color, type ColorClass, type Rgb } from "./color_class";
 import type { Begun } from "./drawing";
 import { rectangle_between, type ImageSize, type Shape } from "./shapes";
 
@@ -86,7 +86,7 @@ export class ShapePen {
   }
 
   private outline(color: ColorClass, is_selected: boolean): void {
-    this.twice(css_color(line_color(label_of(color))), is_selected ? 3 : 1.75);
+    this.twice(css_color(pale(line_color(label_of(color)))), is_selected ? 3 : 1.75);
   }
 
   private twice(color: string, width: number): void {
@@ -102,4 +102,10 @@ export class ShapePen {
 /// On the edges of its pixels.
 function corners_of([x0, y0, x1, y1]: readonly [number, number, number, number]): Point[] {
   return [[x0 - 0.5, y0 - 0.5], [x1 - 0.5, y0 - 0.5], [x1 - 0.5, y1 - 0.5], [x0 - 0.5, y1 - 0.5]];
+}
+
+/// Seen on the class's own color, too.
+function pale([r, g, b]: Rgb): Rgb {
+  const half_way = (value: number): number => Math.round((value + 255) / 2);
+  return [half_way(r), half_way(g), half_way(b)];
 }
