@@ -71,9 +71,9 @@ export interface Api {
   change(change: Change): Promise<Stage[]>;
 }
 
-const patience_ms = 5000;
+export const patience_ms = 5000;
 
-async function ask<T>(path: string, init: RequestInit = {}): Promise<T> {
+export async function ask<T>(path: string, init: RequestInit = {}): Promise<T> {
   const response = await fetch(path, { ...init, cache: "no-store", signal: AbortSignal.timeout(patience_ms) });
   if (response.ok) return (await response.json()) as T;
   if (response.status === 401) throw new Refused(401, "not admitted: open the address that the server printed at its start");
