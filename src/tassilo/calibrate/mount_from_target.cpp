@@ -28,7 +28,7 @@ const std::string kSubject = "mount";
 
 constexpr double kFirstSigma = 1;     ///< Of points while nothing is known of them. [px]
 constexpr double kLeastSigma = 1e-4;  ///< Points are never measured better. [px]
-constexpr double kHarmless = .02;     ///< A point is no outlier for less. [px]
+constexpr double kHarmless = .4;      ///< A point is no outlier for less: far ones are a few pixels in size. [px]
 /// Points are found to hundredths and a usable lens is known to tenths of a pixel: what is explained no better is not
 /// explained. [px]
 constexpr double kMostRms = 1;
