@@ -13,10 +13,13 @@
 #include <utility>
 
 #include "tassilo/app/configuration_watch.h"
+#include "tassilo/app/recent_median.h"
 #include "tassilo/surface/surface.h"
 #include "tassilo/web/server.h"
 
 namespace tassilo {
+
+class Recorder;
 
 /// Settings below `vision:` that somebody changed while running, over those of the robot file.
 using VisionChanges = std::map<std::string, Setting, std::less<>>;
@@ -37,7 +40,8 @@ class LiveView {
   using Load = std::function<std::shared_ptr<const Configuration>(const VisionChanges&)>;
 
   /// Serves at once. Throws Error when it cannot.
-  LiveView(const WebOptions& options, std::string robot_file);
+  /// recorder   what the page's button begins and ends
+  LiveView(const WebOptions& options, std::string robot_file, Recorder* recorder);
   ~LiveView();
   LiveView(const LiveView&) = delete;
   LiveView& operator=(const LiveView&) = delete;
@@ -51,6 +55,8 @@ class LiveView {
   /// One frame was seen. Does not wait.
   void show(const Frame& frame, const Scene& scene, const VisionWorkspace& workspace,
             const std::shared_ptr<const Configuration>& configuration);
+  /// From the capture of a frame to its scene. [ms]
+  void add_latency(double ms);
   /// No more frames come: what `begin` gave is no longer asked.
   void leave();
 
@@ -90,10 +96,12 @@ class LiveView {
   static std::string picture_of(const Snapshot& snapshot);
 
   const std::string robot_file_;
+  Recorder* const recorder_;
   std::mutex loading_;        ///< Held while a configuration is loaded; before the other one.
   mutable std::mutex mutex_;  ///< Guards all down to the server.
   std::condition_variable wanted_;
   Seen seen_;
+  mutable RecentMedian latency_ms_;
   Load load_;
   std::shared_ptr<const Configuration> now_, chosen_;
   VisionChanges changes_;
