@@ -67,12 +67,15 @@ class Channel:
         self.socket.close()
 
 
-class Serve(ProgramTest):
-    def serve(self, *arguments, robot="robot.yaml", colors="div.yaml"):
+class Served(ProgramTest):
+    """A server to ask; other tests of it begin with this, too."""
+
+    def serve(self, *arguments, robot="robot.yaml", colors="div.yaml",
+              source=(RECORDING / "video.mkv", "--odometry", RECORDING / "odometry.jsonl"), **options):
         """Starts the program on a port of its choice and waits until frames are seen."""
         colors = ["--colors", colors] if colors else []
-        self.process = self.start("serve", "--robot", robot, *colors, "--source", RECORDING / "video.mkv", "--odometry",
-                                  RECORDING / "odometry.jsonl", "--port", "0", *arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.process = self.start("serve", "--robot", robot, *colors, "--source", *source, "--port", "0", *arguments,
+                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options)
         self.addCleanup(self.stop)
         self.said = self.process.stdout.readline().decode()
         self.port = int(re.search(r"http://[\d.]+:(\d+)/", self.said)[1])
@@ -108,6 +111,8 @@ class Serve(ProgramTest):
         shutil.copy(RECORDING / "camera.yaml", self.folder / "camera.yaml")
         self.write("robot.yaml", "{camera: camera.yaml, field: msl98}\n")
 
+
+class Serve(Served):
     def test_shows_what_it_sees(self):
         port = self.serve()
         scenes, pictures = Channel(port, "scene"), Channel(port, "picture")

@@ -31,7 +31,8 @@ std::string frame_bytes(const Frame& frame) {
                       frame.range == ColorRange::full,
                       frame.index,
                       frame.t};
-  const std::size_t w = static_cast<std::size_t>(width), half = chroma_width(width), h = static_cast<std::size_t>(height);
+  const std::size_t w = static_cast<std::size_t>(width), half = chroma_width(width),
+                    h = static_cast<std::size_t>(height);
   std::string bytes(sizeof header + (w + 2 * half) * h, '\0');
   std::memcpy(bytes.data(), &header, sizeof header);
   char* y = bytes.data() + sizeof header;

@@ -10,8 +10,8 @@ namespace {
 // Every format, odd sizes, too: what comes back has the same samples at every pixel.
 TEST(FrameBytes, HaveThePixelsOfTheFrame) {
   std::mt19937 random(1);
-  for (const PixelFormat format : {PixelFormat::yuyv422, PixelFormat::uyvy422, PixelFormat::yuv422p,
-                                   PixelFormat::yuv420p, PixelFormat::nv12})
+  for (const PixelFormat format :
+       {PixelFormat::yuyv422, PixelFormat::uyvy422, PixelFormat::yuv422p, PixelFormat::yuv420p, PixelFormat::nv12})
     for (const int width : {1, 2, 7, 16})
       for (const int height : {1, 5, 6}) {
         FrameBuffer buffer = make_frame_buffer(format, width, height, ColorRange::full);

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tassilo/app/frame_bytes.h"
+#include "tassilo/app/recording_api.h"
 #include "tassilo/app/training_requests.h"
 #include "tassilo/base/error.h"
 #include "tassilo/files/jpeg.h"
@@ -99,11 +100,13 @@ void apply_changes(RobotSetup& setup, const VisionChanges& changes) {
   std::erase_if(settings, [&](const auto& setting) { return changes.contains(setting.first); });
   settings.insert(settings.end(), changes.begin(), changes.end());
   setup.vision.options = vision_options(settings, setup.registry);
+  setup.at_work = std::move(settings);
 }
 
-LiveView::LiveView(const WebOptions& options, std::string robot_file, std::filesystem::path samples)
+LiveView::LiveView(const WebOptions& options, std::string robot_file, std::filesystem::path samples, Recorder* recorder)
     : robot_file_(std::move(robot_file)),
       samples_(std::move(samples)),
+      recorder_(recorder),
       server_(
           [&] {
             WebOptions with_channels = options;
@@ -156,6 +159,11 @@ void LiveView::show(const Frame& frame, const Scene& scene, const VisionWorkspac
   snapshot_ = {frame, {}};
   if (is_picture_wanted) snapshot_->scenery = {scene, workspace.surface, configuration};
   wanted_.notify_one();
+}
+
+void LiveView::add_latency(double ms) {
+  const std::lock_guard lock(mutex_);
+  latency_ms_.add(ms, std::chrono::steady_clock::now());
 }
 
 void LiveView::leave() {
@@ -288,17 +296,18 @@ WebResponse LiveView::train(const WebRequest& request) {
     training_ = std::make_unique<TrainingSession>(
         training_files(colors != now->setup.read.end() ? colors->path : "", samples_), *range);
   }
-  return answer_training(*training_, request,
-                         {[this] {
-                            const std::lock_guard lock(mutex_);
-                            return now_->setup.vision.colors;
-                          },
-                          [this](std::optional<std::int64_t> frame) { return shown_frame(frame); },
-                          [this] { take_over_files(); }});
+  return answer_training(
+      *training_, request,
+      {[this] {
+         const std::lock_guard lock(mutex_);
+         return now_->setup.vision.colors;
+       },
+       [this](std::optional<std::int64_t> frame) { return shown_frame(frame); }, [this] { take_over_files(); }});
 }
 
 std::string LiveView::state_json() const {
   const WebCounts counts = server_.counts();
+  const json recording = recording_json(recorder_->state());
   const std::lock_guard lock(mutex_);
   json state({{"version", TASSILO_VERSION},
               {"robot", robot_file_},
@@ -309,9 +318,15 @@ std::string LiveView::state_json() const {
               {"frames", seen_.frames},
               {"dropped", seen_.dropped},
               {"configuration", {{"taken_over", seen_.taken_over}, {"refusal", seen_.refusal}}},
-              {"web", {{"clients", counts.clients}, {"sent", counts.sent}, {"dropped", counts.dropped}}},
+              {"web",
+               {{"viewers", server_.listeners(kScene)},
+                {"clients", counts.clients},
+                {"sent", counts.sent},
+                {"dropped", counts.dropped}}},
               {"picture_fault", seen_.picture_fault},
+              {"recording", recording},
               {"ended", load_ == nullptr && seen_.frames > 0}});
+  if (const auto latency = latency_ms_.get(std::chrono::steady_clock::now())) state["latency_ms"] = *latency;
   if (now_ && now_->vision.optics() != nullptr) state["field"] = field_json(now_->setup.vision.field);
   return state.dump(-1, ' ', false, json::error_handler_t::replace);
 }
@@ -320,6 +335,7 @@ WebResponse LiveView::answer(const WebRequest& request) {
   const bool reads = request.method == "GET" || request.method == "HEAD";
   if (request.path == "/api/state")
     return reads ? WebResponse{200, "application/json", state_json()} : refusal(405, "the state can be read only");
+  if (request.path == "/api/recording") return answer_recording(*recorder_, request);
   if (request.path == "/api/stages") {
     if (request.method == "PUT") return change_stages(request.body);
     if (!reads) return refusal(405, "stages are read by GET and changed by PUT");
@@ -330,7 +346,8 @@ WebResponse LiveView::answer(const WebRequest& request) {
   if (request.path == "/api/training" || request.path.starts_with("/api/training/")) return train(request);
   if (request.path == "/")
     return refusal(404,
-                   "the pages are not installed; /api/state, /api/stages, /api/training, /ws/scene, /ws/picture and "
+                   "the pages are not installed; /api/state, /api/stages, /api/training, /api/recording, /ws/scene, "
+                   "/ws/picture and "
                    "/ws/frame are here");
   return refusal(404, "there is nothing at " + request.path);
 }

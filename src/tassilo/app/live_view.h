@@ -15,11 +15,14 @@
 #include <utility>
 
 #include "tassilo/app/configuration_watch.h"
+#include "tassilo/app/recent_median.h"
 #include "tassilo/app/training_session.h"
 #include "tassilo/surface/surface.h"
 #include "tassilo/web/server.h"
 
 namespace tassilo {
+
+class Recorder;
 
 /// Settings below `vision:` that somebody changed while running, over those of the robot file.
 using VisionChanges = std::map<std::string, Setting, std::less<>>;
@@ -41,7 +44,8 @@ class LiveView {
 
   /// Serves at once. Throws Error when it cannot.
   /// samples   file of the color training; empty: beside the color table
-  LiveView(const WebOptions& options, std::string robot_file, std::filesystem::path samples);
+  /// recorder   what the page's button begins and ends
+  LiveView(const WebOptions& options, std::string robot_file, std::filesystem::path samples, Recorder* recorder);
   ~LiveView();
   LiveView(const LiveView&) = delete;
   LiveView& operator=(const LiveView&) = delete;
@@ -56,6 +60,8 @@ class LiveView {
   /// One frame was seen. Does not wait.
   void show(const Frame& frame, const Scene& scene, const VisionWorkspace& workspace,
             const std::shared_ptr<const Configuration>& configuration);
+  /// From the capture of a frame to its scene. [ms]
+  void add_latency(double ms);
   /// No more frames come: what `begin` gave is no longer asked.
   void leave();
 
@@ -105,16 +111,18 @@ class LiveView {
   const std::filesystem::path samples_;
   std::optional<ColorRange> range_;            ///< Once a source is open.
   std::unique_ptr<TrainingSession> training_;  ///< Since it was first asked for; used by who answers requests.
+  Recorder* const recorder_;
   std::mutex loading_;        ///< Held while a configuration is loaded; before the other one.
   mutable std::mutex mutex_;  ///< Guards all down to the server.
   std::condition_variable wanted_, shown_;
   Seen seen_;
+  mutable RecentMedian latency_ms_;
   Load load_;
   std::shared_ptr<const Configuration> now_, chosen_;
   VisionChanges changes_;
   std::optional<Snapshot> snapshot_;
   bool drawing_ = false, ending_ = false;
-  bool is_frame_wanted_ = false;                               ///< By a request, though nobody listens to frames.
+  bool is_frame_wanted_ = false;                                ///< By a request, though nobody listens to frames.
   std::deque<std::shared_ptr<const std::string>> last_frames_;  ///< That were sent; see frame_bytes.
 
   WebServer server_;

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "tassilo/base/error.h"
-#include "tassilo/files/odometry_file.h"
 
 namespace tassilo {
 
@@ -18,15 +17,34 @@ OdometryInput::OdometryInput(const std::string& location, bool waits) : location
     odometry_.emplace();
     return;
   }
-  const std::vector<OdometrySample> samples = read_odometry(location);
-  odometry_.emplace(std::max<std::size_t>(2, samples.size()));
-  for (const OdometrySample& sample : samples) odometry_->add(sample);
+  recorded_ = read_odometry_lines(location);
+  is_recorded_ = std::ranges::any_of(recorded_, [](const OdometryLine& line) { return line.frame.has_value(); });
+  if (is_recorded_) {
+    restart();
+    return;
+  }
+  odometry_.emplace(std::max<std::size_t>(2, recorded_.size()));
+  for (const OdometryLine& line : recorded_) odometry_->add(line.sample);
+  recorded_ = {};
 }
 
-void OdometryInput::update(double t, const std::function<bool()>& interrupted) {
+void OdometryInput::restart() {
+  if (!is_recorded_) return;
+  odometry_.emplace();  // as large as that of the run that was recorded
+  for (next_recorded_ = 0; next_recorded_ < recorded_.size() && !recorded_[next_recorded_].frame; ++next_recorded_)
+    odometry_->add(recorded_[next_recorded_].sample);
+}
+
+void OdometryInput::update(const Frame& frame, const std::function<bool()>& interrupted) {
+  arrived_.clear();
+  for (; next_recorded_ < recorded_.size() && recorded_[next_recorded_].frame.value_or(0) <= frame.index;
+       ++next_recorded_) {
+    odometry_->add(recorded_[next_recorded_].sample);
+    arrived_.push_back(recorded_[next_recorded_].sample);
+  }
   if (!stream_) return;
   constexpr std::chrono::milliseconds kPatience(100);
-  const auto knows = [&] { return newest_ && *newest_ >= t; };
+  const auto knows = [&] { return newest_ && *newest_ >= frame.t; };
   while (true) {
     const bool is_over = stream_->over();
     const bool may_wait = waits_ && !is_over && !knows();
@@ -41,6 +59,7 @@ void OdometryInput::add(const std::string& line) {
     const OdometrySample sample =
         read_odometry_line(line, fmt::format("{}:{}", location_ == "-" ? "standard input" : location_, lines_)).sample;
     odometry_->add(sample);
+    arrived_.push_back(sample);
     newest_ = std::max(newest_.value_or(sample.t), sample.t);
   } catch (const Error& refusal) {
     if (refused_++ == 0) first_refusal_ = refusal.what();

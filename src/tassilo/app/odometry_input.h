@@ -3,13 +3,17 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "tassilo/files/odometry_file.h"
+#include "tassilo/image/frame.h"
 #include "tassilo/source/line_stream.h"
 #include "tassilo/timeline/odometry.h"
 
 namespace tassilo {
 
-/// The odometry of a run: all of a file at once, or lines that come while it runs (see LineStream).
+/// The odometry of a run: all of a file at once, lines that come while it runs (see LineStream), or those of a
+/// recording, which come again with the frames they came with.
 class OdometryInput {
  public:
   /// location     a file, `-`, `udp:127.0.0.1:PORT`; empty: none
@@ -18,8 +22,15 @@ class OdometryInput {
   /// Throws Error when a file cannot be read.
   OdometryInput(const std::string& location, bool waits);
 
-  /// Takes what has come, before a frame captured at t. `interrupted` ends the waiting.
-  void update(double t, const std::function<bool()>& interrupted);
+  /// Takes what has come before this frame. `interrupted` ends the waiting.
+  void update(const Frame& frame, const std::function<bool()>& interrupted);
+  /// The source begins again: a recording's lines come again with it.
+  void restart();
+
+  /// Is all that will ever be known, known?
+  bool is_whole() const { return !stream_ && !is_recorded_; }
+  /// What the last `update` took.
+  const std::vector<OdometrySample>& arrived() const { return arrived_; }
 
   /// Null: none.
   const Odometry* get() const { return odometry_ ? &*odometry_ : nullptr; }
@@ -34,6 +45,10 @@ class OdometryInput {
   std::optional<LineStream> stream_;
   std::optional<Odometry> odometry_;
   std::optional<double> newest_;  ///< Time of what came. [s]
+  bool is_recorded_ = false;
+  std::vector<OdometryLine> recorded_;
+  std::size_t next_recorded_ = 0;
+  std::vector<OdometrySample> arrived_;
   std::int64_t lines_ = 0, refused_ = 0;
   std::string first_refusal_;
 };

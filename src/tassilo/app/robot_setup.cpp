@@ -80,9 +80,15 @@ RobotSetup read_robot_setup(const std::string& robot_file, const std::string& co
   for (const fs::path& plugin : robot.plugins) setup.read.push_back({"plug-in", plugin.string()});
   for (const std::string& plugin : plugins) setup.read.push_back({"--plugin", plugin});
   setup.registry = registry_of(robot, robot_file, plugins);
-  setup.settings = robot.vision;
+  setup.settings = setup.at_work = robot.vision;
   setup.vision.options = vision_options(setup.settings, setup.registry);
   if (robot.start_pose) setup.vision.start_pose = gaussian_of(*robot.start_pose);
+  if (robot.start_state) {
+    const std::string file = named_file(robot_file, "start_state", *robot.start_state, "");
+    setup.start_state = read_start_state(file);
+    setup.read.push_back({"start state", file});
+  }
+  setup.robot = robot;
   return setup;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -7,6 +8,7 @@
 
 #include "tassilo/app/written_files.h"
 #include "tassilo/files/robot_file.h"
+#include "tassilo/files/start_state_file.h"
 #include "tassilo/vision/vision.h"
 
 namespace tassilo {
@@ -18,7 +20,10 @@ inline constexpr const char* kColorsRole = "color table";
 struct RobotSetup {
   VisionSetup vision;
   StageRegistry registry;                                 ///< What the vision chooses its stages from.
+  RobotFile robot;                                        ///< What the robot file says.
+  std::optional<StartState> start_state;                  ///< Of a recording: what was known before its first frame.
   std::vector<std::pair<std::string, Setting>> settings;  ///< Below `vision:`, as written.
+  std::vector<std::pair<std::string, Setting>> at_work;   ///< The same with what was changed while running.
   std::vector<NamedFile> read;
 };
 

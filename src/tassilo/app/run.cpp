@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 #include <signal.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -15,6 +17,7 @@
 #include "tassilo/app/live_view.h"
 #include "tassilo/app/odometry_input.h"
 #include "tassilo/app/progress.h"
+#include "tassilo/app/recorder.h"
 #include "tassilo/app/run_sinks.h"
 #include "tassilo/app/run_summary.h"
 #include "tassilo/app/written_files.h"
@@ -70,6 +73,22 @@ std::string name_of(const Frame& frame, const std::string& source) {
   return path.filename() == frame.image ? source : (path / frame.image).string();
 }
 
+/// A pipe, a socket or a terminal: who reads it waits for somebody else.
+bool comes_as_it_comes(int descriptor) {
+  struct stat status {};
+  return fstat(descriptor, &status) == 0 && !S_ISREG(status.st_mode);
+}
+
+/// A line with its end.
+std::string recording_summary(const RecordingState& recording) {
+  if (recording.name.empty()) return "";
+  std::string text = fmt::format("recording: {}, {} frames",
+                                 (std::filesystem::path(recording.folder) / recording.name).string(), recording.frames);
+  if (recording.parts > 1) text += fmt::format(" in {} parts", recording.parts);
+  if (recording.dropped > 0) text += fmt::format(", {} not recorded", recording.dropped);
+  return text + "\n";
+}
+
 double ms_between(std::chrono::steady_clock::time_point from, std::chrono::steady_clock::time_point to) {
   return std::chrono::duration<double, std::milli>(to - from).count();
 }
@@ -77,13 +96,14 @@ double ms_between(std::chrono::steady_clock::time_point from, std::chrono::stead
 /// One run, from the configuration to the summary.
 class Run {
  public:
-  Run(const RunArguments& arguments, LiveView* live)
+  Run(const RunArguments& arguments, LiveView* live, Recorder* recorder)
       : arguments_(arguments),
         live_(live),
+        recorder_(recorder),
         // Nothing but scene lines may go where scene lines go.
         report_(arguments.output == "-" ? stderr : stdout),
         configuration_(load(live != nullptr ? live->changes() : VisionChanges{})),
-        odometry_(arguments.odometry, loses_nothing()) {
+        odometry_(arguments.odometry, loses_nothing(arguments.source)) {
     check_paths(arguments_, configuration_->setup.read);
     workspace_.watch_boundary = !arguments_.overlay_step.empty();
   }
@@ -114,7 +134,8 @@ class Run {
         // One load after the other: what is chosen in a browser meanwhile is not lost by an older one.
         return live_ != nullptr ? live_->load_with_changes(load_checked) : load_checked({});
       });
-    if (live_ != nullptr) live_->begin(name(), info_.description, arguments_.every, info_.range, configuration_, load_checked);
+    if (live_ != nullptr)
+      live_->begin(name(), info_.description, arguments_.every, info_.range, configuration_, load_checked);
 
     std::optional<Error> damage;
     const auto begin = Clock::now();
@@ -129,12 +150,18 @@ class Run {
       damage = error;
     }
     const double seconds = ms_between(begin, Clock::now()) / 1000;
+    if (recorder_ != nullptr) recorder_->finish();
     progress_->finish();
+    tell_of_recording();
     if (odometry_.get() != nullptr) summary_.set_odometry(odometry_.get()->counts());
     tell(summary_.text(seconds, camera_summary(source_->camera_counts()) + odometry_.summary()));
     if (interrupted) tell("\nended by a signal; all lines are complete\n");
     tell(sinks.names());
+    if (recorder_ != nullptr && !arguments_.record.empty()) tell(recording_summary(recorder_->state()));
     if (damage) throw *damage;
+    // What was asked for at the start and is not whole is a failure; a button's is told where it was pressed.
+    if (live_ == nullptr && recorder_ != nullptr && !recorder_->state().trouble.empty())
+      throw Error("recording", recorder_->state().trouble);
   }
 
  private:
@@ -149,8 +176,8 @@ class Run {
            (std::filesystem::is_regular_file(path, ignored) || std::filesystem::is_directory(path, ignored));
   }
   bool is_live() const { return arguments_.source.camera.has_value(); }
-  /// Do frames wait until somebody wants them?
-  bool loses_nothing() const { return !is_live() && arguments_.source.source.find("://") == std::string::npos; }
+  /// Is the time until a frame is there that of waiting for it?
+  bool waits_for_frames() const { return info_.live || is_piped_; }
   const std::string& name() const { return info_.name; }
   void tell(const std::string& text) const {
     if (!arguments_.quiet) fmt::print(report_, "{}", text);
@@ -162,9 +189,17 @@ class Run {
     std::fflush(report_);
   }
 
+  void tell_of_recording() const {
+    if (recorder_ == nullptr) return;
+    for (const std::string& news : recorder_->news()) tell_now(news + "\n");
+  }
+
   std::shared_ptr<const Configuration> load(const VisionChanges& changes) const {
     return load_configuration(arguments_.robot, arguments_.colors, arguments_.plugins, [&](RobotSetup& setup) {
-      if (arguments_.start) setup.vision.start_pose = gaussian_of(*arguments_.start);
+      if (arguments_.start) {
+        setup.vision.start_pose = gaussian_of(*arguments_.start);
+        setup.start_state.reset();
+      }
       if (!changes.empty()) apply_changes(setup, changes);
     });
   }
@@ -198,7 +233,18 @@ class Run {
     const bool is_first = !source_;
     source_.emplace(open_source_of(options));
     if (is_first) info_ = source_->info();  // a file that is played again is the same
+    begin_history();
     check_source(configuration_->vision);
+  }
+
+  /// A recording goes on from where it was begun.
+  void begin_history() {
+    odometry_.restart();
+    workspace_.history.clear();
+    const std::optional<StartState>& start = configuration_->setup.start_state;
+    if (!start) return;
+    workspace_.history.beliefs.add(start->t, start->belief);
+    workspace_.history.tracks.add(start->t, start->tracks);
   }
 
   void see_all(RunSinks& sinks) {
@@ -244,10 +290,16 @@ class Run {
     RecycledString changes = taken_over(frame.index);
     const Vision& vision = configuration_->vision;
     vision.check_frames(name_of(frame, name()), frame.view.width(), frame.view.height(), frame.range);
-    odometry_.update(frame.t, [] { return interrupted.load(); });
+    odometry_.update(frame, [] { return interrupted.load(); });
     const Odometry* const odometry = odometry_.get();
+    if (recorder_ != nullptr) recorder_->before(frame, configuration_, workspace_.history, odometry_);
     Scene scene = seen_by(vision, frame, odometry);
-    scene.timing.insert(scene.timing.begin(), {is_live() ? "wait" : "decode", decode_ms});
+    if (const std::optional<double> now = source_->now()) {
+      const double latency_ms = 1000 * (*now - frame.t);
+      summary_.add_latency(latency_ms);
+      if (live_ != nullptr) live_->add_latency(latency_ms);
+    }
+    scene.timing.insert(scene.timing.begin(), {waits_for_frames() ? "wait" : "decode", decode_ms});
     if (!changes.empty()) scene.why.emplace_back("configuration", std::move(changes));
     if (odometry != nullptr) {
       const bool known = odometry->at(frame.t).has_value();
@@ -256,6 +308,8 @@ class Run {
     }
     sinks.write(frame, scene, workspace_, vision.optics());
     if (live_ != nullptr) live_->show(frame, scene, workspace_, configuration_);
+    if (recorder_ != nullptr) recorder_->after(frame, scene, odometry_);
+    tell_of_recording();
     summary_.add(scene);
     progress_->frame(++done_);
   }
@@ -287,10 +341,12 @@ class Run {
 
   const RunArguments& arguments_;
   LiveView* live_;
+  Recorder* recorder_;
   std::FILE* report_;
   std::shared_ptr<const Configuration> configuration_;
   OdometryInput odometry_;
   std::optional<FrameSource> source_;
+  const bool is_piped_ = arguments_.source.source == "-" && comes_as_it_comes(STDIN_FILENO);
   SourceInfo info_;  ///< Stays as it is once other threads may look at it.
   VisionWorkspace workspace_;
   RunSummary summary_;
@@ -301,8 +357,12 @@ class Run {
 
 }  // namespace
 
-int run(const RunArguments& arguments, LiveView* live) {
-  Run one(arguments, live);
+bool loses_nothing(const SourceArguments& source) {
+  return !source.camera && source.source.find("://") == std::string::npos;
+}
+
+int run(const RunArguments& arguments, LiveView* live, Recorder* recorder) {
+  Run one(arguments, live, recorder);
   one();
   return 0;
 }

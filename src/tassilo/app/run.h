@@ -11,11 +11,13 @@
 namespace tassilo {
 
 class LiveView;
+class Recorder;
 
 /// What the command line says of a run.
 struct RunArguments {
   SourceArguments source;
   std::string robot, odometry, output, overlay, overlay_step, label_maps, colors, start_pose;
+  std::string record;  ///< Folder for recordings; with `run`, one begins at once.
   std::vector<std::string> plugins;
   std::optional<StartPose> start;  ///< What `start_pose` says.
   int every = 1;
@@ -29,9 +31,12 @@ void add_run_options(CLI::App& command, RunArguments& arguments);
 /// Throws CLI::ValidationError: what it refuses is wrong usage.
 void understand(RunArguments& arguments);
 
+/// Do the source's frames wait until somebody wants them?
+bool loses_nothing(const SourceArguments& source);
+
 /// Sees every frame of the source. With a live view what is seen is shown there, stages may be changed from there, and
-/// files play in real time, again and again. Ends at the source's end or by a signal; returns the exit code.
-/// Throws Error when something in the world fails.
-int run(const RunArguments& arguments, LiveView* live);
+/// files play in real time, again and again. With a recorder what is seen may be recorded. Ends at the source's end or
+/// by a signal; returns the exit code. Throws Error when something in the world fails.
+int run(const RunArguments& arguments, LiveView* live, Recorder* recorder);
 
 }  // namespace tassilo

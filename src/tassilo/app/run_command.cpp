@@ -2,12 +2,14 @@
 #include <charconv>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "tassilo/app/boundary_steps.h"
 #include "tassilo/app/commands.h"
+#include "tassilo/app/recorder.h"
 #include "tassilo/app/run.h"
 
 namespace tassilo {
@@ -28,10 +30,12 @@ std::optional<StartPose> start_pose_from(const std::string& text) {
     if (good) *values[count] = value;
     begin = end + 1;
   }
-  if (!good || count < 3 || !(pose.sigma_xy > 0) || !(pose.sigma_theta > 0))
+  if (!good || count < 3 || !(pose.sigma_xy > 0) || !(pose.sigma_theta > 0) ||
+      std::abs(pose.theta) > 2 * std::numbers::pi)
     throw CLI::ValidationError(
         "--start-pose",
-        "is " + text + ", must be X,Y,THETA or X,Y,THETA,SIGMA_XY,SIGMA_THETA in m and rad, sigmas > 0");
+        "is " + text +
+            ", must be X,Y,THETA or X,Y,THETA,SIGMA_XY,SIGMA_THETA in m and rad, sigmas > 0, THETA at most a turn");
   return pose;
 }
 
@@ -80,8 +84,16 @@ Command add_run(CLI::App& program) {
   add_run_options(*command, *arguments);
   command->add_flag("--watch", arguments->watch,
                     "take changes of the robot file, and of the files it names, over between two frames");
+  command->add_option("--record", arguments->record,
+                      "record into a new folder below this one: lossless video, odometry, scenes and configuration, "
+                      "from which the same scenes come again");
   command->callback([arguments] { understand(*arguments); });
-  return [arguments] { return run(*arguments, nullptr); };
+  return [arguments] {
+    if (arguments->record.empty()) return run(*arguments, nullptr, nullptr);
+    Recorder recorder(arguments->record, loses_nothing(arguments->source));
+    recorder.start();
+    return run(*arguments, nullptr, &recorder);
+  };
 }
 
 }  // namespace tassilo

@@ -14,6 +14,15 @@ double quantile(std::vector<double> values, double q) {
   return values[static_cast<std::size_t>(at)];
 }
 
+/// Of a run without end the last two hours.
+void keep(std::vector<double>& values, double value, std::int64_t count) {
+  constexpr std::size_t most = 200'000;
+  if (values.size() < most)
+    values.push_back(value);
+  else
+    values[static_cast<std::size_t>(count) % most] = value;
+}
+
 /// "1 frame", "2 frames".
 std::string counted(std::int64_t count, std::string_view thing) {
   return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
@@ -53,13 +62,11 @@ void RunSummary::add(const Scene& scene) {
   for (const StageTime& time : scene.timing) {
     auto it = std::ranges::find(times_, time.stage, &std::pair<std::string, std::vector<double>>::first);
     if (it == times_.end()) it = times_.insert(times_.end(), {time.stage, {}});
-    constexpr std::size_t most = 200'000;  // of a run without end the last two hours
-    if (it->second.size() < most)
-      it->second.push_back(time.ms);
-    else
-      it->second[static_cast<std::size_t>(frames_) % most] = time.ms;
+    keep(it->second, time.ms, frames_);
   }
 }
+
+void RunSummary::add_latency(double ms) { keep(latencies_ms_, ms, frames_); }
 
 /// "odometry: 118 of 120 frames, 2 missing; 3 samples out of order, 1 duplicate sample", without what is zero.
 std::string RunSummary::odometry_text() const {
@@ -86,6 +93,9 @@ std::string RunSummary::text(double seconds, const std::string& source) const {
   out += fmt::format(", {} dropped\n", dropped_);
   out += source + odometry_text();
   if (frames_ == 0) return out;
+  if (!latencies_ms_.empty())
+    out += fmt::format("latency from capture to scene: median {:.1f} ms, p99 {:.1f} ms\n", quantile(latencies_ms_, 0.5),
+                       quantile(latencies_ms_, 0.99));
   out += fmt::format("\n{:16}{:>10}{:>10}\n", "seen", "frames", "objects");
   for (const auto& [kind, count] : seen_) out += fmt::format("{:16}{:>10}{:>10}\n", kind, count.frames, count.objects);
   out += fmt::format("\n{:16}{:>10}{:>10}\n", "stage", "median ms", "p99 ms");

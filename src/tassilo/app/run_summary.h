@@ -19,6 +19,9 @@ class RunSummary {
   /// Did it say where the robot was at this frame's time?
   void add_odometry(bool known) { ++(known ? odometry_known_ : odometry_missing_); }
 
+  /// From the capture of a frame to its scene. [ms]
+  void add_latency(double ms);
+
   /// A table for people, several lines, each ended. `source` are such lines of the source.
   std::string text(double seconds, const std::string& source) const;
 
@@ -32,6 +35,8 @@ class RunSummary {
   };
   std::vector<std::pair<std::string, Count>> seen_;
   std::vector<std::pair<std::string, std::vector<double>>> times_;  ///< By stage, in the order they ran. [ms]
+
+  std::vector<double> latencies_ms_;
 
   Count& count_of(const std::string& kind);
   std::string odometry_text() const;

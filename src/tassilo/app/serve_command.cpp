@@ -9,6 +9,7 @@
 
 #include "tassilo/app/commands.h"
 #include "tassilo/app/live_view.h"
+#include "tassilo/app/recorder.h"
 #include "tassilo/app/run.h"
 #include "tassilo/app/terminal_qr.h"
 #include "tassilo/web/access.h"
@@ -22,6 +23,7 @@ struct ServeArguments {
   RunArguments run;
   WebOptions web;
   std::string pages, samples;
+  std::string recordings = "recordings";
 };
 
 /// The first folder of pages that is there: what the environment says, beside the installed program, where this was
@@ -44,7 +46,8 @@ int serve(const ServeArguments& arguments) {
   web.pages = arguments.pages.empty() ? pages_folder() : fs::path(arguments.pages);
   // Who can reach it from elsewhere must have been told.
   if (!is_loopback(web.address) && web.token.empty()) web.token = new_token();
-  LiveView live(web, arguments.run.robot, arguments.samples);
+  Recorder recorder(arguments.recordings, false);
+  LiveView live(web, arguments.run.robot, arguments.samples, &recorder);
   if (!arguments.run.quiet) {
     fmt::print("{} {} {}{}; Ctrl-C ends\n", web.pages.empty() ? "serving at" : "open", live.url(),
                web.pages.empty() ? "for programs" : "in a browser",
@@ -55,7 +58,7 @@ int serve(const ServeArguments& arguments) {
     if (!is_loopback(web.address) && isatty(STDOUT_FILENO) == 1) fmt::print("{}", terminal_qr(live.url()));
     std::fflush(stdout);
   }
-  return run(arguments.run, &live);
+  return run(arguments.run, &live, &recorder);
 }
 
 }  // namespace
@@ -84,6 +87,10 @@ Command add_serve(CLI::App& program) {
                       "samples.yaml of the color training, read and written (default: beside the color table)");
   command->add_option("--pages", arguments->pages, "folder with pages, instead of the installed ones")
       ->check(CLI::ExistingDirectory);
+  command
+      ->add_option("--recordings", arguments->recordings,
+                   "folder below which recordings are made that are begun in the browser")
+      ->capture_default_str();
   command->callback([arguments] {
     arguments->run.watch = !arguments->run.robot.empty();
     understand(arguments->run);

@@ -85,9 +85,8 @@ int train_colors_command(const TrainArguments& arguments) {
   const ColorRange images_range = arguments.range == "full" ? ColorRange::full : ColorRange::limited;
   const TrainingSet samples{arguments.samples, load_samples(arguments.samples, images_range, warn)};
   check_written_files(samples.loaded.files,
-                      std::array<NamedFile, 2>{
-                          {{"--output", arguments.output},
-                           {"the PNG of --output", table_paths(arguments.output).next.string()}}});
+                      std::array<NamedFile, 2>{{{"--output", arguments.output},
+                                                {"the PNG of --output", table_paths(arguments.output).next.string()}}});
   std::optional<TrainingSet> held_out;
   if (!arguments.held_out.empty())
     held_out = {arguments.held_out, load_samples(arguments.held_out, images_range, warn)};

@@ -89,8 +89,7 @@ Region sample_region(const SampleShape& shape, const FrameView& frame, const std
   const PixelBox around{-frame.width(), -frame.height(), std::min(2 * frame.width(), kMaxCoordinate),
                         std::min(2 * frame.height(), kMaxCoordinate)};
   if (const auto* box = std::get_if<PixelBox>(&shape)) return Region::from_box(*box);
-  if (const auto* polygon = std::get_if<std::vector<PixelPoint>>(&shape))
-    return region_from_polygon(*polygon, around);
+  if (const auto* polygon = std::get_if<std::vector<PixelPoint>>(&shape)) return region_from_polygon(*polygon, around);
   if (const auto* stroke = std::get_if<SampleStroke>(&shape))
     return region_from_stroke(stroke->way, stroke->radius, around);
   const auto& mask = std::get<SampleMask>(shape);

@@ -31,8 +31,7 @@ std::string base64(std::span<const std::uint8_t> bytes) {
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
     const auto byte = [&](std::size_t k) { return i + k < bytes.size() ? unsigned{bytes[i + k]} : 0u; };
     const unsigned three = byte(0) << 16 | byte(1) << 8 | byte(2);
-    for (std::size_t k = 0; k < 4; ++k)
-      out += i + k <= bytes.size() ? letters[three >> (18 - 6 * k) & 63] : '=';
+    for (std::size_t k = 0; k < 4; ++k) out += i + k <= bytes.size() ? letters[three >> (18 - 6 * k) & 63] : '=';
   }
   return out;
 }
@@ -137,7 +136,8 @@ json seen_json(const TrainingSession::Result& result, ColorClass color) {
   std::vector<std::uint8_t> density(cells.size());
   for (std::size_t i = 0; i < cells.size(); ++i)
     if (cells[i] > 0)
-      density[i] = static_cast<std::uint8_t>(most > 1 ? 1 + std::lround(254 * std::log(cells[i]) / std::log(most)) : 255);
+      density[i] =
+          static_cast<std::uint8_t>(most > 1 ? 1 + std::lround(254 * std::log(cells[i]) / std::log(most)) : 255);
   return {{"class", to_string(color)}, {"density", base64(density)}, {"most", most}, {"brightness", brightness}};
 }
 
@@ -211,7 +211,8 @@ WebResponse answer_image(TrainingSession& session, const WebRequest& request, co
     return image ? WebResponse{200, "application/octet-stream", *image->bytes} : text(404, "there is no such picture");
   }
   if (request.method == "DELETE")
-    return session.remove_image(id) ? state_response(session, run.table_in_use()) : text(404, "there is no such picture");
+    return session.remove_image(id) ? state_response(session, run.table_in_use())
+                                    : text(404, "there is no such picture");
   return text(405, "a picture is read by GET and forgotten by DELETE");
 }
 

@@ -24,9 +24,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostImages = 64;
-constexpr std::size_t kMostImageBytes = 256u << 20;     // [B]
-constexpr std::size_t kMostSamplesText = 1 << 20;       // as of every YAML file [B]
-constexpr double kMuchOverlap = 0.01;                   // share of a class's pixels that another one claims, too
+constexpr std::size_t kMostImageBytes = 256u << 20;      // [B]
+constexpr std::size_t kMostSamplesText = 1 << 20;        // as of every YAML file [B]
+constexpr double kMuchOverlap = 0.01;                    // share of a class's pixels that another one claims, too
 constexpr auto kQuiet = std::chrono::milliseconds(250);  // a draft that changes more often is still being drawn
 
 /// Nothing when there is no such file.
@@ -128,10 +128,10 @@ void TrainingSession::load_samples_file() {
                     fmt::format("{} has {} color range, what is seen now has {}; a table is for one range",
                                 file.string(), to_string(frames[i].range), to_string(range_)));
       const bool is_one_of_many = order.size() > 1 || order[i] > 0;
-      images_.push_back({std::to_string(next_image_++),
-                         is_one_of_many ? fmt::format("{}, frame {}", file.filename().string(), order[i])
-                                        : file.filename().string(),
-                         std::make_shared<const std::string>(frame_bytes(frames[i])), file, order[i]});
+      images_.push_back(
+          {std::to_string(next_image_++),
+           is_one_of_many ? fmt::format("{}, frame {}", file.filename().string(), order[i]) : file.filename().string(),
+           std::make_shared<const std::string>(frame_bytes(frames[i])), file, order[i]});
       ids[{file, order[i]}] = images_.back().id;
     }
   }
@@ -159,8 +159,8 @@ std::shared_ptr<const TrainingSession::Drawn> TrainingSession::drawn(const Draft
   const Frame frame = frame_of_bytes(images_[index].bytes);
   auto drawn = std::make_shared<Drawn>();
   drawn->sample = sample;
-  drawn->region = clipped(sample_region(sample.shape, frame.view, "samples"),
-                          {0, 0, frame.view.width(), frame.view.height()});
+  drawn->region =
+      clipped(sample_region(sample.shape, frame.view, "samples"), {0, 0, frame.view.width(), frame.view.height()});
   auto pixels = std::make_shared<ColorSample>();
   pixels->color = sample.color;
   pixels->pixels = pixels_of(frame.view, drawn->region);
@@ -210,7 +210,8 @@ std::vector<std::string> TrainingSession::warnings() const {
     const std::int64_t pixels = quality.pixels(color);
     if (pixels > 0 &&
         std::ranges::none_of(table_.chroma, [&](ClassBits bits) { return (bits & class_bit(color)) != 0; }))
-      warnings.push_back(fmt::format("the samples of {} have no common color: the class stays empty", to_string(color)));
+      warnings.push_back(
+          fmt::format("the samples of {} have no common color: the class stays empty", to_string(color)));
     for (const ColorClass other : kColorClasses) {
       const double overlap =
           share(quality.overlap[static_cast<std::size_t>(color)][static_cast<std::size_t>(other)], pixels);
@@ -237,13 +238,14 @@ TrainingSession::Image TrainingSession::add_image(std::shared_ptr<const std::str
   const Frame frame = frame_of_bytes(bytes);
   const std::lock_guard lock(mutex_);
   if (frame.range != range_)
-    throw Error("picture", fmt::format("has {} color range, the others have {}", to_string(frame.range),
-                                       to_string(range_)));
+    throw Error("picture",
+                fmt::format("has {} color range, the others have {}", to_string(frame.range), to_string(range_)));
   std::size_t size = bytes->size();
   for (const Image& image : images_) size += image.bytes->size();
   if (images_.size() >= kMostImages || size > kMostImageBytes)
-    throw Error("pictures", fmt::format("there are {} of {} MB with this one, must be at most {} and {} MB; remove some",
-                                        images_.size() + 1, size >> 20, kMostImages, kMostImageBytes >> 20));
+    throw Error("pictures",
+                fmt::format("there are {} of {} MB with this one, must be at most {} and {} MB; remove some",
+                            images_.size() + 1, size >> 20, kMostImages, kMostImageBytes >> 20));
   images_.push_back({std::to_string(next_image_++), fmt::format("frame {}", frame.index), std::move(bytes), {}, 0});
   return images_.back();
 }
@@ -269,8 +271,9 @@ TrainingSession::Result TrainingSession::set_draft(TrainingDraft draft) {
   {
     const std::lock_guard lock(mutex_);
     if (draft.version != version_)
-      throw Error("draft", fmt::format("is made of version {}, must be of version {}: somebody else changed it meanwhile",
-                                       draft.version, version_));
+      throw Error("draft",
+                  fmt::format("is made of version {}, must be of version {}: somebody else changed it meanwhile",
+                              draft.version, version_));
     std::vector<std::shared_ptr<const Drawn>> all;
     all.reserve(draft.samples.size());
     for (const DraftSample& sample : draft.samples) all.push_back(drawn(sample));
@@ -382,8 +385,8 @@ void TrainingSession::restore(const std::string& id) {
   if (former == history.end()) throw Error(id, "is no table of the history");
   if (!former->fault.empty()) throw Error(id, "cannot be read: " + former->fault);
   if (former->colors.table.range != range_)
-    throw Error(id, fmt::format("is for {} color range, what is seen now has {}",
-                                to_string(former->colors.table.range), to_string(range_)));
+    throw Error(id, fmt::format("is for {} color range, what is seen now has {}", to_string(former->colors.table.range),
+                                to_string(range_)));
   keep_present_table();
   write_colors(files_.colors, former->colors);
 }

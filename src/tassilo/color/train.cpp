@@ -159,8 +159,8 @@ std::span<const TrainingNumber> training_numbers() {
       TrainingNumber{"brightness_outlier_share", "1", 0, 0.2,
                      "share of a class's pixels at either end of its brightness that are mixed or in deep shade",
                      &T::brightness_outlier_share},
-      TrainingNumber{"min_cluster_share", "1", 0, 0.5, "a separate cluster with a smaller share of the pixels is a slip",
-                     &T::min_cluster_share},
+      TrainingNumber{"min_cluster_share", "1", 0, 0.5,
+                     "a separate cluster with a smaller share of the pixels is a slip", &T::min_cluster_share},
       TrainingNumber{"closing_px", "step", 1, 31, "closing of the UV cluster", nullptr, &T::closing_px},
       TrainingNumber{"opening_px", "step", 1, 15, "opening of the UV cluster", nullptr, &T::opening_px},
       TrainingNumber{"noise_margin", "step", 0, 20, "margin around the UV cluster", &T::noise_margin},
@@ -194,9 +194,9 @@ void TrainingOptions::check() const {
   for (const ColorClass color : kColorClasses) {
     const auto& interval = brightness[static_cast<std::size_t>(class_index(color))];
     if (interval && !(0 <= interval->low && interval->low <= interval->high && interval->high <= 255))
-      throw Error("train.brightness." + std::string(to_string(color)),
-                  "is [" + std::to_string(interval->low) + ", " + std::to_string(interval->high) +
-                      "], must be [low, high] in 0..255");
+      throw Error("train.brightness." + std::string(to_string(color)), "is [" + std::to_string(interval->low) + ", " +
+                                                                           std::to_string(interval->high) +
+                                                                           "], must be [low, high] in 0..255");
   }
 }
 

@@ -62,8 +62,8 @@ struct TrainingNumber {
   std::string_view key, unit;  ///< The field's name; "1": no unit.
   double low = 0, high = 0;    ///< Both belong to the range.
   std::string_view meaning;
-  double TrainingOptions::* real = nullptr;  ///< Exactly one of these two is set.
-  int TrainingOptions::* whole = nullptr;
+  double TrainingOptions::*real = nullptr;  ///< Exactly one of these two is set.
+  int TrainingOptions::*whole = nullptr;
 
   double of(const TrainingOptions& options) const { return real != nullptr ? options.*real : options.*whole; }
   /// Throws Error("train.KEY", what it must be) when the value is out of range or, of a whole number, not whole.

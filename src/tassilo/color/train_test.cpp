@@ -216,7 +216,8 @@ TEST(IncrementalTraining, EqualsTrainingAnew) {
       default:
         const Paint& paint = kPaints[number(6)];
         samples.push_back(std::make_shared<ColorSample>(ColorSample{paint.color, 0, pixels(paint, 0.7, 400, random)}));
-        if (number(5) == 0) samples.back() = std::make_shared<ColorSample>(ColorSample{ColorClass::no_color, 0, samples.back()->pixels});
+        if (number(5) == 0)
+          samples.back() = std::make_shared<ColorSample>(ColorSample{ColorClass::no_color, 0, samples.back()->pixels});
     }
     std::vector<ColorSample> copies;
     for (const auto& sample : samples) copies.push_back(*sample);

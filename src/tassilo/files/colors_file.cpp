@@ -46,9 +46,8 @@ std::string interval_yaml(const BrightnessInterval& interval) {
 
 void read_brightness(const Value& value, ColorTable& table) {
   table.brightness.fill(kNoBrightness);
-  for_each_color(value, [&](ColorClass color, const Value& entry) {
-    table.brightness[index_of(color)] = interval_of(entry);
-  });
+  for_each_color(value,
+                 [&](ColorClass color, const Value& entry) { table.brightness[index_of(color)] = interval_of(entry); });
 }
 
 void read_chroma(const Value& value, const fs::path& folder, ColorTable& table) {
@@ -85,9 +84,8 @@ Provenance provenance_of(const Value& value) {
   if (const auto options = map.find("options"))
     for (const auto& [name, option] : options->any_map().entries()) provenance.options[name] = option.number();
   if (const auto brightness = map.find("brightness"))
-    for_each_color(*brightness, [&](ColorClass color, const Value& entry) {
-      provenance.brightness[color] = interval_of(entry);
-    });
+    for_each_color(*brightness,
+                   [&](ColorClass color, const Value& entry) { provenance.brightness[color] = interval_of(entry); });
   if (const auto quality = map.find("quality"))
     for_each_color(*quality, [&](ColorClass color, const Value& entry) {
       const Map numbers = entry.map({"precision", "recall"});
@@ -173,8 +171,7 @@ TablePaths table_paths(const fs::path& file) {
     paths.now = read_yaml(file).any_map().at("table").path(file.parent_path());
   } catch (const Error&) {  // what cannot be read names nothing that must be kept
   }
-  if (paths.now.lexically_normal() == first.lexically_normal())
-    paths.next = fs::path(file).replace_extension(".2.png");
+  if (paths.now.lexically_normal() == first.lexically_normal()) paths.next = fs::path(file).replace_extension(".2.png");
   return paths;
 }
 

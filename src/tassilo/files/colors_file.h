@@ -23,8 +23,8 @@ struct Provenance {
   std::string date;     ///< As written, 2026-11-22.
   std::map<ColorClass, ClassQuality> quality;
   std::string notes;
-  std::map<std::string, double, std::less<>> options;     ///< Of the training, by name, where not the default.
-  std::map<ColorClass, BrightnessInterval> brightness;    ///< Where it was set by hand. low <= high
+  std::map<std::string, double, std::less<>> options;   ///< Of the training, by name, where not the default.
+  std::map<ColorClass, BrightnessInterval> brightness;  ///< Where it was set by hand. low <= high
   friend bool operator==(const Provenance&, const Provenance&) = default;
 };
 

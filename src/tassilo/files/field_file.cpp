@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <sstream>
 
 #include "tassilo/base/error.h"
 #include "tassilo/files/internal/checked.h"
 #include "tassilo/files/internal/color_value.h"
+#include "tassilo/files/internal/yaml_text.h"
 #include "tassilo/files/nearest_name.h"
 #include "tassilo/files/yaml.h"
 
@@ -112,6 +114,15 @@ FieldModel field_of(const Value& root, const fs::path& file) {
   return checked(std::move(field), file.string());
 }
 
+std::string interval_yaml(const Interval& interval) { return yaml_numbers(std::array{interval.low, interval.high}); }
+
+template <class T, class Text>
+void write_list(std::ostringstream& out, const char* key, const std::vector<T>& items, Text text_of) {
+  if (items.empty()) return;
+  out << key << ":\n";
+  for (const T& item : items) out << "  - " << text_of(item) << "\n";
+}
+
 std::vector<std::string> shipped_names(std::span<const fs::path> folders) {
   std::vector<std::string> names;
   for (const fs::path& folder : folders) {
@@ -169,6 +180,39 @@ FieldModel read_field(const std::string& name, std::span<const fs::path> folders
 }
 
 FieldModel read_field(const std::string& name) { return read_field(name, config_folders()); }
+
+std::string field_yaml(const FieldModel& field) {
+  const auto number = [](double value) { return number_text(value); };
+  std::ostringstream out;
+  out << "length: " << number(field.length) << "\nwidth: " << number(field.width)
+      << "\nline_width: " << number(field.line_width) << "\nhalfway_line: " << (field.halfway_line ? "true" : "false")
+      << "\ntouchlines: " << (field.touchlines ? "true" : "false") << "\ncircle_radius: " << number(field.circle_radius)
+      << "\n";
+  write_list(out, "areas", field.areas, [&](const FieldModel::Area& area) {
+    return "{depth: " + number(area.depth) + ", width: " + number(area.width) + "}";
+  });
+  write_list(out, "segments", field.segments, [](const FieldModel::Segment& s) {
+    return yaml_numbers(std::array{s.x0, s.y0, s.x1, s.y1});
+  });
+  write_list(out, "arcs", field.arcs, [](const FieldModel::Arc& arc) {
+    return yaml_numbers(std::array{arc.cx, arc.cy, arc.radius, arc.from, arc.to});
+  });
+  write_list(out, "goals", field.goals, [&](const FieldModel::Goal& goal) {
+    return std::string("{side: ") + (goal.side == GoalSide::plus_x ? "+x" : "-x") +
+           ", color: " + (goal.color == GoalColor::yellow ? "yellow" : "blue") + ", width: " + number(goal.width) +
+           ", height: " + number(goal.height) + ", depth: " + number(goal.depth) + "}";
+  });
+  if (const auto& walls = field.walls)
+    out << "walls: {color: " << yaml_text(walls->color) << ", height: " << number(walls->height)
+        << ", x: " << interval_yaml(walls->x) << ", y: " << interval_yaml(walls->y) << "}\n";
+  out << "ball: {color: " << yaml_text(field.ball.color) << ", radius: " << interval_yaml(field.ball.radius) << "}\n"
+      << "robots: {width: " << interval_yaml(field.robots.width) << ", height: " << interval_yaml(field.robots.height)
+      << ", body: " << yaml_text(field.robots.body) << ", markers: [";
+  for (std::size_t i = 0; i < field.robots.markers.size(); ++i)
+    out << (i > 0 ? ", " : "") << yaml_text(field.robots.markers[i]);
+  out << "]}\n";
+  return out.str();
+}
 
 FieldModel field_from_yaml(std::string_view text, const fs::path& file) {
   return field_of(parse_yaml(text, file.string()), file);

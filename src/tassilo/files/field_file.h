@@ -24,6 +24,9 @@ bool is_field_path(std::string_view name_or_path);
 FieldModel read_field(const std::string& name_or_path, std::span<const std::filesystem::path> folders);
 FieldModel read_field(const std::string& name_or_path);
 
+/// The text of such a file; reading it gives the same field, to the last bit, but for the name.
+std::string field_yaml(const FieldModel& field);
+
 /// The content of a field file; `file` names it in messages, its stem becomes the field's name.
 FieldModel field_from_yaml(std::string_view text, const std::filesystem::path& file);
 

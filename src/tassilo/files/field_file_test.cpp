@@ -30,6 +30,18 @@ TEST(FieldFile, EveryShippedFieldLoads) {
                          {"msl98", "msl9x5", "msl", "spl", "humanoid_kid", "rcj_soccer", "rcj_soccer_walls", "ssl"}));
 }
 
+TEST(FieldFile, WrittenFieldsReadBackTheSame) {
+  for (const auto& entry : fs::directory_iterator(kConfig / "fields")) {
+    SCOPED_TRACE(entry.path());
+    FieldModel field = read_field(entry.path().string());
+    EXPECT_EQ(field_from_yaml(field_yaml(field), entry.path()), field);
+    field.length += 1e-15 * field.length;
+    field.arcs.push_back({0.1, -0.2, 1. / 3, -1, 2});
+    field.segments.push_back({-1. / 7, 0, 1, 2});
+    EXPECT_EQ(field_from_yaml(field_yaml(field), entry.path()), field);
+  }
+}
+
 TEST(FieldFile, WalledFieldsHaveTheDimensionsOfTheRecordings) {
   const FieldModel msl98 = read_field("msl98");
   EXPECT_EQ(msl98.length, 8.22);

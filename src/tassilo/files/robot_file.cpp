@@ -1,9 +1,13 @@
 #include "tassilo/files/robot_file.h"
 
 #include <array>
+#include <charconv>
 #include <numbers>
+#include <sstream>
 
 #include "tassilo/files/field_file.h"
+#include "tassilo/files/internal/exact_number.h"
+#include "tassilo/files/internal/yaml_text.h"
 #include "tassilo/files/yaml.h"
 
 namespace tassilo {
@@ -22,6 +26,13 @@ StartPose start_pose_of(const Value& value) {
   return pose;
 }
 
+bool is_number(const Setting& setting) {
+  double value = 0;
+  const char* const end = setting.text.data() + setting.text.size();
+  const auto [rest, error] = std::from_chars(setting.text.data(), end, value);
+  return error == std::errc() && rest == end;
+}
+
 void read_identity(const Value& value, RobotFile& robot) {
   constexpr std::array<std::string_view, 2> kTeams{"cyan", "magenta"};
   const Map map = value.map({"id", "team"});
@@ -30,7 +41,7 @@ void read_identity(const Value& value, RobotFile& robot) {
 }
 
 RobotFile robot_of(const Value& root, const fs::path& folder) {
-  const Map map = root.map({"robot", "camera", "colors", "field", "start_pose", "plugins", "vision"});
+  const Map map = root.map({"robot", "camera", "colors", "field", "start_pose", "start_state", "plugins", "vision"});
   RobotFile robot;
   if (const auto value = map.find("robot")) read_identity(*value, robot);
   if (const auto value = map.find("camera")) robot.camera = value->path(folder);
@@ -38,6 +49,7 @@ RobotFile robot_of(const Value& root, const fs::path& folder) {
   if (const auto value = map.find("field"))
     robot.field = is_field_path(value->string()) ? value->path(folder).string() : value->string();
   if (const auto value = map.find("start_pose")) robot.start_pose = start_pose_of(*value);
+  if (const auto value = map.find("start_state")) robot.start_state = value->path(folder);
   if (const auto value = map.find("plugins"); value && !value->is_null())
     for (const Value& plugin : value->list()) robot.plugins.push_back(plugin.path(folder));
   if (const auto value = map.find("vision"); value && !value->is_null())  // all commented out is as good as missing
@@ -45,7 +57,41 @@ RobotFile robot_of(const Value& root, const fs::path& folder) {
   return robot;
 }
 
+/// As it was written: a number stays one, whatever else it says stays text.
+std::string setting_yaml(const Setting& setting) {
+  const bool is_plain = !setting.quoted && (setting.text == "true" || setting.text == "false" || is_number(setting));
+  return is_plain ? setting.text : yaml_text(setting.text);
+}
+
 }  // namespace
+
+std::string robot_yaml(const RobotFile& robot, const fs::path& folder) {
+  std::ostringstream out;
+  out << "robot: {id: " << robot.id;
+  if (robot.team != Team::unknown) out << ", team: " << to_string(robot.team);
+  out << "}\n";
+  if (robot.camera) out << "camera: " << yaml_path(*robot.camera, folder) << "\n";
+  if (robot.colors) out << "colors: " << yaml_path(*robot.colors, folder) << "\n";
+  if (robot.field) {
+    const bool is_path = is_field_path(*robot.field);
+    out << "field: " << (is_path ? yaml_path(*robot.field, folder) : yaml_text(*robot.field)) << "\n";
+  }
+  if (const auto& pose = robot.start_pose)
+    out << "start_pose: {x: " << exact_number(pose->x) << ", y: " << exact_number(pose->y)
+        << ", theta: " << exact_number(pose->theta) << ", sigma_xy: " << exact_number(pose->sigma_xy)
+        << ", sigma_theta: " << exact_number(pose->sigma_theta) << "}\n";
+  if (robot.start_state) out << "start_state: " << yaml_path(*robot.start_state, folder) << "\n";
+  if (!robot.plugins.empty()) {
+    out << "plugins:\n";
+    for (const fs::path& plugin : robot.plugins) out << "  - " << yaml_path(plugin, folder) << "\n";
+  }
+  if (!robot.vision.empty()) {
+    out << "vision:\n";
+    for (const auto& [key, setting] : robot.vision)
+      out << "  " << yaml_text(key) << ": " << setting_yaml(setting) << "\n";
+  }
+  return out.str();
+}
 
 RobotFile read_robot(const fs::path& file) { return robot_of(read_yaml(file), file.parent_path()); }
 RobotFile robot_from_yaml(std::string_view text, const fs::path& file) {

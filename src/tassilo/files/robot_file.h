@@ -26,7 +26,8 @@ struct RobotFile {
   std::optional<std::filesystem::path> colors;
   std::optional<std::string> field;  ///< A shipped name or a resolved path, as read_field takes it.
   std::optional<StartPose> start_pose;
-  std::vector<std::filesystem::path> plugins;  ///< Shared libraries that bring alternatives for stages.
+  std::optional<std::filesystem::path> start_state;  ///< What was known before the first frame; see start_state_file.h.
+  std::vector<std::filesystem::path> plugins;        ///< Shared libraries that bring alternatives for stages.
   /// The keys below `vision:` in their order, for whoever knows what they mean.
   std::vector<std::pair<std::string, Setting>> vision;
 };
@@ -34,5 +35,7 @@ struct RobotFile {
 /// Does not open the files it names. Throws Error with file, line and column.
 RobotFile read_robot(const std::filesystem::path& file);
 RobotFile robot_from_yaml(std::string_view text, const std::filesystem::path& file);
+/// The text of such a file in `folder`, paths relative to it where they can be; reading it gives the same robot.
+std::string robot_yaml(const RobotFile& robot, const std::filesystem::path& folder);
 
 }  // namespace tassilo

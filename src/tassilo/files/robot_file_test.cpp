@@ -21,6 +21,39 @@ vision:
   ball_min_px: 12
 )";
 
+TEST(RobotFile, WrittenRobotsReadBackTheSame) {
+  const std::string quoted = "vision: {a: \"12\", b: 1e-3, c: skeleton, d: true, e: \"x: #y\", f: -0.5}\n";
+  for (const std::string& text : {kFull, std::string("{}"), std::string("robot: {id: 7}\nfield: fields/own.yaml\n"),
+                                  "start_state: state.yaml\nplugins: [a.so, ../b c.so]\n" + quoted}) {
+    SCOPED_TRACE(text);
+    const RobotFile robot = robot_from_yaml(text, "robots/r3/robot.yaml");
+    const RobotFile read = robot_from_yaml(robot_yaml(robot, "robots/r3"), "robots/r3/robot.yaml");
+    EXPECT_EQ(read.id, robot.id);
+    EXPECT_EQ(read.team, robot.team);
+    const auto normal = [](const std::optional<fs::path>& path) {
+      return path ? std::optional(path->lexically_normal()) : std::nullopt;
+    };
+    EXPECT_EQ(normal(read.camera), normal(robot.camera));
+    EXPECT_EQ(normal(read.colors), normal(robot.colors));
+    EXPECT_EQ(normal(read.start_state), normal(robot.start_state));
+    EXPECT_EQ(read.field, robot.field);
+    ASSERT_EQ(read.start_pose.has_value(), robot.start_pose.has_value());
+    if (robot.start_pose) {
+      EXPECT_EQ(read.start_pose->theta, robot.start_pose->theta);
+      EXPECT_EQ(read.start_pose->sigma_xy, robot.start_pose->sigma_xy);
+    }
+    ASSERT_EQ(read.plugins.size(), robot.plugins.size());
+    for (std::size_t i = 0; i < read.plugins.size(); ++i) EXPECT_EQ(normal(read.plugins[i]), normal(robot.plugins[i]));
+    ASSERT_EQ(read.vision.size(), robot.vision.size());
+    for (std::size_t i = 0; i < read.vision.size(); ++i) {
+      EXPECT_EQ(read.vision[i].first, robot.vision[i].first);
+      EXPECT_EQ(read.vision[i].second.text, robot.vision[i].second.text);
+      const bool is_text = robot.vision[i].second.text == "skeleton" || robot.vision[i].second.text == "x: #y";
+      EXPECT_TRUE(is_text || read.vision[i].second.quoted == robot.vision[i].second.quoted);
+    }
+  }
+}
+
 TEST(RobotFile, ReadsEverything) {
   const RobotFile robot = robot_from_yaml(kFull, "robots/r3/robot.yaml");
   EXPECT_EQ(robot.id, 3);
@@ -66,7 +99,8 @@ TEST(RobotFile, MalformedFilesAreRefused) {
   };
   const Case cases[] = {
       {"colors:", "colours:",
-       "r:3:1: unknown key 'colours', must be robot, camera, colors, field, start_pose, plugins or vision; did you "
+       "r:3:1: unknown key 'colours', must be robot, camera, colors, field, start_pose, start_state, plugins or "
+       "vision; did you "
        "mean "
        "colors?"},
       {"id: 3", "id: 256", "r:1:13: robot.id is '256', must be >= 0 and <= 255"},

@@ -62,8 +62,7 @@ TrainingDraft draft_from_json(std::string_view text, std::string_view place) {
   TrainingDraft draft;
   draft.version = map.at("version").integer(0);
   for (const Value& entry : map.at("samples").list(0, kMostSamples)) {
-    const Map sample =
-        entry.map({"image", "class", "rectangle", "polygon", "stroke", "radius", "mask", "value"});
+    const Map sample = entry.map({"image", "class", "rectangle", "polygon", "stroke", "radius", "mask", "value"});
     draft.samples.push_back({sample.at("image").string(), label_of(sample.at("class")), sample_shape_of(sample, {})});
   }
   read_options(map.at("options").any_map(), draft.options);

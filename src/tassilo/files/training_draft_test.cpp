@@ -16,9 +16,9 @@ TEST(TrainingDraft, SamplesSurviveTheirWayToTheBrowserAndBack) {
       {"4", ColorClass::yellow, SampleMask{"/somewhere/labels.png", 8}}};
   std::string list;
   for (const DraftSample& sample : samples) list.append(list.empty() ? "" : ",").append(draft_sample_json(sample));
-  const TrainingDraft draft = draft_from_json(R"({"version":7,"samples":[)" + list +
-                                                  R"(],"options":{"closing_px":7},"brightness":{"white":[150,255]}})",
-                                              "request");
+  const TrainingDraft draft = draft_from_json(
+      R"({"version":7,"samples":[)" + list + R"(],"options":{"closing_px":7},"brightness":{"white":[150,255]}})",
+      "request");
   EXPECT_EQ(draft.version, 7);
   EXPECT_EQ(draft.samples, samples);
   TrainingOptions options;

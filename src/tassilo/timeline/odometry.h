@@ -56,6 +56,11 @@ class Odometry {
   /// samples is not blown up. Nothing further away, and nothing from one sample alone except at its own time.
   std::optional<OdometrySample> at(double t) const;
 
+  /// As it came; i < size(), 0 is the oldest.
+  OdometrySample operator[](std::size_t i) const {
+    const Timed<OdometryPose>& pose = poses_[i];
+    return {pose.t, pose.value.x, pose.value.y, pose.value.theta};
+  }
   std::size_t size() const { return poses_.size(); }
   std::size_t capacity() const { return poses_.capacity(); }
   const SequenceCounts& counts() const { return poses_.counts(); }
