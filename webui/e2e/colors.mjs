@@ -308,8 +308,12 @@ async function main(url, browser, screenshots) {
   await step("as narrow as a telephone, nothing sticks out, and fingers draw", async () => {
     await page.setViewportSize({ width: 390, height: 844 });
     await new Promise((done) => setTimeout(done, 200));
-    const wide = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
-    assert.ok(wide <= 0, `the page is ${wide} px too wide`);
+    const [wide, who] = await page.evaluate(() => {
+      const { clientWidth, scrollWidth } = document.documentElement;
+      const sticking = [...document.querySelectorAll("main *")].filter((element) => element.getBoundingClientRect().right > clientWidth + 0.5);
+      return [scrollWidth - clientWidth, sticking.slice(0, 5).map((element) => `${element.tagName} ${element.className}`).join(", ")];
+    });
+    assert.ok(wide <= 0, `the page is ${wide} px too wide: ${who}`);
     await picture("phone_dark");
     await page.emulateMedia({ colorScheme: "light" });
     const session = await context.newCDPSession(page);

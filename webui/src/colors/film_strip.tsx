@@ -1,6 +1,7 @@
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { YuvFrame } from "../link/frame_bytes";
 import { useValue } from "../link/observable";
+import { ClassDot } from "./class_dot";
 import { title_of } from "./color_class";
 import type { ColorsSession } from "./colors_session";
 import { FramePainter } from "./frame_painter";
@@ -101,7 +102,7 @@ function SampleList({ colors, id }: { colors: ColorsSession; id: string }) {
       <ul>
         {samples.map((sample, i) => (
           <li key={i} class={sample === selected ? "chosen" : ""}>
-            <span class={`dot-of ${sample.class}`} aria-hidden="true" />
+            <ClassDot color={sample.class} />
             <button type="button" class="plain" onClick={() => { colors.choose_tool("select"); colors.selected.set(sample); }}>
               {title_of(sample.class)}, {kind_of(sample)}{"mask" in sample ? ` ${sample.mask}` : ""}
             </button>
