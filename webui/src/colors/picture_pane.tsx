@@ -8,7 +8,7 @@ import { type Tool, tools } from "./drawing";
 import { kind_of } from "./shapes";
 import { PictureCanvas } from "./picture_canvas";
 
-const mode_titles: Record<Mode, string> = { picture: "Picture", luma: "Y", overlay: "Classes over it", labels: "Classes", difference: "Difference" };
+const mode_titles: Record<Mode, string> = { picture: "Picture", luma: "Y", overlay: "Overlay", labels: "Classes", difference: "Difference" };
 const tool_keys: Record<Tool, string> = { polygon: "p", rectangle: "r", brush: "b", select: "s" };
 
 /// The picture that is shown, what is drawn on it, and the tools for that.
@@ -36,7 +36,7 @@ export function PicturePane({ colors }: { colors: ColorsSession }) {
     <section class="looked-at" aria-label="Picture">
       <ModeBar colors={colors} />
       <div class={`stage-of-picture ${tool}`}>
-        <canvas ref={canvas} tabIndex={0} data-show="color-picture"
+        <canvas ref={canvas} tabIndex={0} role="application" data-show="color-picture"
                 aria-label="picture to draw samples on; arrow keys move a cross, Enter does what a click would, n selects the next sample" />
         <PictureWords colors={colors} />
         <div class="zooms">
