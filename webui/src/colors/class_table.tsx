@@ -12,7 +12,7 @@ export function ClassTable({ colors }: { colors: ColorsSession }) {
     <section class="classes" aria-label="Classes">
       <header>
         <h2>Classes</h2>
-        <span class="faint" data-show="quality-state">{quality === null ? "quality is being measured" : "quality on held-out samples"}</span>
+        <span class="faint" data-show="quality-state">{history.present.samples.length === 0 ? "" : quality === null ? "quality is being measured" : "quality on held-out samples"}</span>
       </header>
       <table>
         <thead>

@@ -2,10 +2,15 @@ import { describe, expect, test } from "vitest";
 import { Refused } from "../link/api";
 import type { YuvFrame } from "../link/frame_bytes";
 import { Observable } from "../link/observable";
-import type { ImageEntry, TrainingApi } from "../link/training_api";
+import type { ImageEntry, Training, TrainingApi } from "../link/training_api";
 import { random_frame } from "../testing";
 import { Pictures } from "./pictures";
 import { TrainingModel } from "./training_model";
+
+function told(images: ImageEntry[]): Training {
+  return { version: 1, is_saved: true, range: "limited", files: { samples: "", colors: "", images: "", refusal: "" }, images, samples: [], options: [],
+    brightness: {}, history: [] };
+}
 
 /// Keeps the frame that was asked for while it still has it, else its newest.
 function robot(has: number[]) {
@@ -23,6 +28,8 @@ function robot(has: number[]) {
     pixels: async (id: string): Promise<YuvFrame> => kept.get(id)!,
   } as unknown as TrainingApi;
   const training = new TrainingModel(api, { after: () => () => {} });
+  // Opened before, and without pictures.
+  training.view.set({ ...training.view.value, training: told([]) });
   return { asked, state, training, pictures: new Pictures(api, training, new Observable(false)) };
 }
 
@@ -70,4 +77,14 @@ describe("drawing on the live picture", () => {
     expect(await pictures.hold()).toBeNull();
     expect(asked).toEqual([]);
   });
+});
+
+test("a picture that is gone is neither shown nor remembered: its name may come again for another", async () => {
+  const { pictures, training } = robot([7]);
+  pictures.live.set(random_frame(7, 4, 2));
+  await pictures.hold();
+  expect(pictures.loaded.value.has("k7")).toBe(true);
+  training.view.set({ ...training.view.value, training: told([]) });
+  expect(pictures.loaded.value.size).toBe(0);
+  expect(pictures.shown.value.kind).toBe("live");
 });

@@ -195,7 +195,7 @@ describe("another browser", () => {
     await clock.ring(2000);
     expect(xs(model.draft)).toEqual([70]);
     expect(model.view.value.result?.version).toBe(server.version);
-    expect(model.view.value.history.undoes).toBe("change in another browser");
+    expect(model.view.value.history.undoes).toBe("change from elsewhere");
     expect(model.view.value.is_saved).toBe(false);
   });
 
@@ -305,8 +305,12 @@ test("a picture is needed as long as undo or redo may need it", async () => {
 test("quality is asked when the draft is left alone, and forgotten with the next edit", async () => {
   const { server, clock, model, add } = await opened();
   await clock.ring(700);
-  expect(model.view.value.quality?.version).toBe(server.version);
+  expect(server.asked).not.toContain("quality");   // there is nothing to judge
   add(1);
+  await settle();
+  await clock.ring(700);
+  expect(model.view.value.quality?.version).toBe(server.version);
+  add(2);
   expect(model.view.value.quality).toBeNull();
   await settle();
   await clock.ring(700);

@@ -42,7 +42,7 @@ const retry_ms = 1000;
 const quality_delay_ms = 700;
 const watch_ms = 2000;
 
-export const changed_elsewhere = "Samples or parameters were changed in another browser. Theirs are shown now, and undo brings yours back.";
+export const changed_elsewhere = "Samples or parameters were changed elsewhere, in another browser or by a restart. Those are shown now, and undo brings yours back.";
 
 /// The draft here, and the server that trains it. At most one request that changes something is on its way; what is edited meanwhile waits, and only its
 /// newest is sent. Nothing that was edited here is ever lost: what another browser did becomes one more step of the history.
@@ -225,7 +225,7 @@ export class TrainingModel {
       this.update({ training });
     } else {
       this.accepted = theirs;
-      this.update({ training, history: history.edit(theirs, "change in another browser"), notice: changed_elsewhere, quality: null });
+      this.update({ training, history: history.edit(theirs, "change from elsewhere"), notice: changed_elsewhere, quality: null });
       this.seen = null;
     }
     if (training.is_saved) this.saved = theirs;
@@ -315,7 +315,8 @@ export class TrainingModel {
 
   private ask_quality_later(): void {
     this.cancels.quality?.();
-    if (this.is_open) this.cancels.quality = this.clock.after(quality_delay_ms, () => void this.ask_quality());
+    // Without samples there is nothing to judge.
+    if (this.is_open && this.draft.samples.length > 0) this.cancels.quality = this.clock.after(quality_delay_ms, () => void this.ask_quality());
   }
 
   private async ask_quality(): Promise<void> {
