@@ -1,7 +1,7 @@
 import { useEffect, useRef } from "preact/hooks";
 import { useValue } from "../link/observable";
 import type { Interval } from "./classify";
-import { css_color, label_of, line_color, title_of } from "./color_class";
+import { css_color, label_of, line_color, type Rgb, title_of } from "./color_class";
 import type { ColorsSession } from "./colors_session";
 import { with_brightness } from "./draft";
 
@@ -81,7 +81,7 @@ export function Brightness({ colors }: { colors: ColorsSession }) {
       </header>
       <div ref={track} class="track" onPointerDown={down} onPointerMove={move} onPointerUp={up} onPointerCancel={up}>
         {interval !== null && <div class="span" style={{ left: `${(100 * interval[0]) / 255}%`, width: `${(100 * (interval[1] - interval[0])) / 255}%` }} />}
-        <Histogram counts={counts} interval={interval} color={css_color(line_color(label_of(color)))} />
+        <Histogram counts={counts} interval={interval} color={css_color(bar_color(label_of(color)))} />
         {probe !== null && <div class="mark-line" style={{ left: `${(100 * probe.y) / 255}%` }} />}
         {interval !== null && ends.map((end) => (
           <div key={end} role="slider" tabIndex={0} class={`thumb ${end === 0 ? "low" : "high"}`} style={{ left: `${(100 * interval[end]) / 255}%` }}
@@ -92,6 +92,11 @@ export function Brightness({ colors }: { colors: ColorsSession }) {
       </div>
     </div>
   );
+}
+
+/// Seen on a light and a dark ground.
+function bar_color(label: number): Rgb {
+  return label === label_of("white") ? [170, 178, 186] : line_color(label);
 }
 
 interface HistogramProps {
@@ -112,11 +117,8 @@ function Histogram({ counts, interval, color }: HistogramProps) {
       if (count === 0) return;
       const height = Math.max(120 * Math.sqrt(count / most), 3);
       context.globalAlpha = interval !== null && interval[0] <= y && y <= interval[1] ? 1 : 0.35;
-      // A gray top, on which white ones are seen too.
-      context.fillStyle = "rgb(120 130 138)";
-      context.fillRect(2 * y, 128 - height, 2, 3);
       context.fillStyle = color;
-      context.fillRect(2 * y, 131 - height, 2, height);
+      context.fillRect(2 * y, 128 - height, 2, height);
     });
     context.globalAlpha = 1;
   }, [counts, interval?.[0], interval?.[1], color]);
