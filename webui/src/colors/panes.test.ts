@@ -2,7 +2,7 @@ import { describe, expect, test } from "vitest";
 import { numbers_from } from "../testing";
 import { key_target, moved_end } from "./brightness";
 import type { Interval } from "./classify";
-import { quality_in_short, why_not_saved } from "./save_pane";
+import { local_time, quality_in_short, why_not_saved } from "./save_pane";
 
 describe("the two thumbs", () => {
   test("stay whole, within 0 .. 255, and never pass each other", () => {
@@ -38,4 +38,11 @@ test("what cannot be saved says why, the most lasting reason first", () => {
 test("a table's quality in short is that of its worst class", () => {
   expect(quality_in_short({ green: { recall: 0.99, precision: 0.98 }, red: { recall: 0.87, precision: null } })).toBe("worst: red 87.0 %");
   expect(quality_in_short({ green: { recall: null } })).toBe("quality unknown");
+});
+
+test("times are read with colons and as names of files have them; what is no time stays as it is", () => {
+  const shown = local_time("2026-11-28T00:58:46Z");
+  expect(shown).toMatch(/2026/);
+  for (const other of ["2026-11-28T00-58-46Z", "2026-11-28T00-58-46Z-2", "2026-11-28T00:58:46.123Z"]) expect(local_time(other)).toBe(shown);
+  for (const none of ["", "yesterday", "2026-13-45T99-99-99Z"]) expect(local_time(none)).toBe(none);
 });

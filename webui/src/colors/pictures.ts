@@ -18,6 +18,8 @@ export class Pictures {
   readonly loaded = new Observable<ReadonlyMap<string, YuvFrame>>(new Map());
   /// The live picture is also wanted while a kept one is shown.
   readonly preview = new Observable(true);
+  /// As they were when they were looked at last.
+  private names = new Map<string, string>();
   private is_open = false;
   private holding: Promise<string | null> | null = null;
   private readonly loading = new Set<string>();
@@ -141,11 +143,17 @@ export class Pictures {
     }
   }
 
-  /// A robot that was started anew may give their names to others.
+  /// A robot that was started anew may give their ids to others.
   private drop_gone(): void {
     const images = this.training.view.value.training?.images ?? [];
-    const gone = [...this.loaded.value.keys()].filter((id) => !images.some((image) => image.id === id));
-    if (gone.length > 0) this.loaded.set(new Map([...this.loaded.value].filter(([id]) => !gone.includes(id))));
+    const is_there = (id: string): boolean => {
+      const image = images.find((other) => other.id === id);
+      const name = this.names.get(id);
+      return image !== undefined && (name === undefined || name === image.name);
+    };
+    const left = [...this.loaded.value].filter(([id]) => is_there(id));
+    this.names = new Map(images.map(({ id, name }) => [id, name]));
+    if (left.length < this.loaded.value.size) this.loaded.set(new Map(left));
     const shown = this.shown.value;
     if (shown.kind === "kept" && this.training.view.value.training !== null && !images.some(({ id }) => id === shown.id)) this.show_live();
   }
