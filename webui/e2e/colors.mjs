@@ -233,9 +233,9 @@ async function main(url, browser, screenshots) {
     const tables = (await api("GET", "")).history.length;
     await page.getByRole("textbox", { name: /notes/ }).fill("by the test");
     await show("save").click();
-    await until("a table more", async () => (await api("GET", "")).history.length === tables + 1);
+    await until("a table more", async () => (await api("GET", "")).history.length > tables);
     const { is_saved, history, images, samples: kept } = await api("GET", "");
-    assert.ok(is_saved && history[0].in_use && history[0].notes === "by the test");
+    assert.ok(is_saved && history[0].in_use && history[0].notes.includes("by the test"));
     assert.ok(images.filter(({ id }) => kept.some(({ image }) => image === id)).every((image) => image.kept), "pictures with samples are in files");
     await until("nothing changes any more", async () => (await changed_percent()) === 0);
     await until("the page says so", async () => (await show("saved").innerText()) === "saved");
@@ -308,8 +308,12 @@ async function main(url, browser, screenshots) {
   await step("as narrow as a telephone, nothing sticks out, and fingers draw", async () => {
     await page.setViewportSize({ width: 390, height: 844 });
     await new Promise((done) => setTimeout(done, 200));
-    const wide = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
-    assert.ok(wide <= 0, `the page is ${wide} px too wide`);
+    const [wide, who] = await page.evaluate(() => {
+      const { clientWidth, scrollWidth } = document.documentElement;
+      const sticking = [...document.querySelectorAll("main *")].filter((element) => element.getBoundingClientRect().right > clientWidth + 0.5);
+      return [scrollWidth - clientWidth, sticking.slice(0, 5).map((element) => `${element.tagName} ${element.className}`).join(", ")];
+    });
+    assert.ok(wide <= 0, `the page is ${wide} px too wide: ${who}`);
     await picture("phone_dark");
     await page.emulateMedia({ colorScheme: "light" });
     const session = await context.newCDPSession(page);

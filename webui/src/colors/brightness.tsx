@@ -1,7 +1,7 @@
 import { useEffect, useRef } from "preact/hooks";
 import { useValue } from "../link/observable";
 import type { Interval } from "./classify";
-import { css_color, label_of, line_color, title_of } from "./color_class";
+import { css_color, label_of, line_color, type Rgb, title_of } from "./color_class";
 import type { ColorsSession } from "./colors_session";
 import { with_brightness } from "./draft";
 
@@ -80,7 +80,9 @@ export function Brightness({ colors }: { colors: ColorsSession }) {
         </span>
       </header>
       <div ref={track} class="track" onPointerDown={down} onPointerMove={move} onPointerUp={up} onPointerCancel={up}>
-        <Histogram counts={counts} interval={interval} color={css_color(line_color(label_of(color)))} mark={probe?.y ?? null} />
+        {interval !== null && <div class="span" style={{ left: `${(100 * interval[0]) / 255}%`, width: `${(100 * (interval[1] - interval[0])) / 255}%` }} />}
+        <Histogram counts={counts} interval={interval} color={css_color(bar_color(label_of(color)))} />
+        {probe !== null && <div class="mark-line" style={{ left: `${(100 * probe.y) / 255}%` }} />}
         {interval !== null && ends.map((end) => (
           <div key={end} role="slider" tabIndex={0} class={`thumb ${end === 0 ? "low" : "high"}`} style={{ left: `${(100 * interval[end]) / 255}%` }}
                aria-label={`${end === 0 ? "lowest" : "highest"} brightness of ${title_of(color)}`} aria-valuemin={end === 0 ? 0 : interval[0]}
@@ -92,40 +94,33 @@ export function Brightness({ colors }: { colors: ColorsSession }) {
   );
 }
 
+/// Seen on a light and a dark ground.
+function bar_color(label: number): Rgb {
+  return label === label_of("white") ? [170, 178, 186] : line_color(label);
+}
+
 interface HistogramProps {
   counts: readonly number[] | null;
   interval: Interval | null;
   color: string;
-  mark: number | null;
 }
 
 /// By the square root, so that rare ones are seen too; faint outside of the interval.
-function Histogram({ counts, interval, color, mark }: HistogramProps) {
+function Histogram({ counts, interval, color }: HistogramProps) {
   const canvas = useRef<HTMLCanvasElement>(null);
   useEffect(() => {
     const element = canvas.current!;
     const context = element.getContext("2d")!;
-    const style = getComputedStyle(element);
     context.clearRect(0, 0, 512, 128);
-    if (interval !== null) {
-      context.fillStyle = style.getPropertyValue("--accent-ground");
-      context.fillRect(2 * interval[0], 0, 2 * (interval[1] - interval[0] + 1), 128);
-    }
     const most = Math.max(...(counts ?? []), 1);
     counts?.forEach((count, y) => {
       if (count === 0) return;
       const height = Math.max(120 * Math.sqrt(count / most), 3);
       context.globalAlpha = interval !== null && interval[0] <= y && y <= interval[1] ? 1 : 0.35;
-      context.fillStyle = style.getPropertyValue("--faint");
-      context.fillRect(2 * y, 128 - height, 2, height);
       context.fillStyle = color;
-      context.fillRect(2 * y, 128 - height, 2, height - 2);
+      context.fillRect(2 * y, 128 - height, 2, height);
     });
     context.globalAlpha = 1;
-    if (mark !== null) {
-      context.fillStyle = style.getPropertyValue("--text");
-      context.fillRect(2 * mark, 0, 2, 128);
-    }
-  }, [counts, interval?.[0], interval?.[1], color, mark]);
+  }, [counts, interval?.[0], interval?.[1], color]);
   return <canvas ref={canvas} width={512} height={128} role="img" aria-label="how many pixels have which brightness" data-show="histogram" />;
 }

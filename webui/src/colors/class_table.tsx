@@ -1,7 +1,8 @@
 import { count, missing } from "../format";
 import { useValue } from "../link/observable";
 import type { ClassQuality } from "../link/training_api";
-import { color_classes, css_color, label_colors, title_of } from "./color_class";
+import { ClassDot } from "./class_dot";
+import { color_classes, title_of } from "./color_class";
 import type { ColorsSession } from "./colors_session";
 
 /// All classes: which is drawn, what it has, and how good it is on samples that it was not trained with.
@@ -11,14 +12,14 @@ export function ClassTable({ colors }: { colors: ColorsSession }) {
     <section class="classes" aria-label="Classes">
       <header>
         <h2>Classes</h2>
-        <span class="faint" data-show="quality-state">{quality === null ? "quality is being measured" : "quality on held-out samples"}</span>
+        <span class="faint" data-show="quality-state">{history.present.samples.length === 0 ? "" : quality === null ? "quality is being measured" : "quality on held-out samples"}</span>
       </header>
       <table>
         <thead>
           <tr>
             <th>class</th>
             <th class="number">samples</th>
-            <th class="number">pixels</th>
+            <th class="number pixels">pixels</th>
             <th class="number" title="share of its pixels that are found">found</th>
             <th class="number" title="share of what is found that is right">right</th>
             <th><span class="unseen">clear</span></th>
@@ -35,12 +36,12 @@ export function ClassTable({ colors }: { colors: ColorsSession }) {
                   <button type="button" class="class-choice" aria-pressed={color === chosen} aria-keyshortcuts={String(label)} title={`draw ${title_of(color)} (${label})`}
                           onClick={() => colors.choose(color)}>
                     <kbd>{label}</kbd>
-                    <span class="dot-of" style={{ background: css_color(label_colors[label]!) }} aria-hidden="true" />
+                    <ClassDot color={color} />
                     {title_of(color)}
                   </button>
                 </th>
                 <td class="number">{samples === 0 ? <span class="faint">{missing}</span> : samples}</td>
-                <td class="number" data-show="pixels">{entry === undefined || entry.pixels === 0 ? <span class="faint">{missing}</span> : count(entry.pixels)}</td>
+                <td class="number pixels" data-show="pixels">{entry === undefined || entry.pixels === 0 ? <span class="faint">{missing}</span> : count(entry.pixels)}</td>
                 <td class="number"><Share of={judged} which="recall" /></td>
                 <td class="number"><Share of={judged} which="precision" /></td>
                 <td>

@@ -45,22 +45,24 @@ export function ColorsPage({ session }: { session: Session }) {
         <ClassTable colors={colors} />
         <Chosen colors={colors} />
         <SavePane colors={colors} />
+        <section class="help" aria-label="Keys">
+          <details>
+            <summary>Keys</summary>
+            <dl>{key_help.map(([keys, what]) => <div key={keys}><dt><kbd>{keys}</kbd></dt><dd>{what}</dd></div>)}</dl>
+          </details>
+        </section>
       </div>
-      <details class="help">
-        <summary>Keys</summary>
-        <dl>{key_help.map(([keys, what]) => <div key={keys}><dt><kbd>{keys}</kbd></dt><dd>{what}</dd></div>)}</dl>
-      </details>
     </div>
   );
 }
 
 /// What must be read before anything else, and what is only read aloud.
 function Words({ colors }: { colors: ColorsSession }) {
-  const { notice, trouble } = useValue(colors.training.view);
+  const { notice, trouble, training } = useValue(colors.training.view);
   const said = useValue(colors.said);
   return (
     <div class="words">
-      {trouble && <p class="notice" role="alert" data-show="trouble">{trouble}; what you draw is kept here and sent when it answers</p>}
+      {trouble && <p class="notice" role="alert" data-show="trouble">{trouble}{training !== null && "; what you draw is kept here and sent when it answers"}</p>}
       {notice && (
         <p class="notice warning" role="alert" data-show="notice">
           <span>{notice}</span>
@@ -89,13 +91,13 @@ function Parameters({ colors }: { colors: ColorsSession }) {
   const options = options_of(history.present, training?.options ?? []);
   const changed = options.filter((option) => option.changed).length;
   return (
-    <section class="parameters" aria-label="Parameters">
+    <section class="parameters" aria-label="Parameters" onChange={() => colors.training.end_gesture()}>
       <header>
         <h2>Parameters</h2>
         <span class="faint">{changed === 0 ? "all as usual" : `${changed} changed`}</span>
       </header>
       {options.map((option) => (
-        <OptionRow key={option.key} option={option} model={colors.options} usual="the default" error={typed.errors.get(option.key)}
+        <OptionRow key={option.key} option={option} model={colors.options} usual="the default" slide={(value) => colors.options.slide(option.key, value)} error={typed.errors.get(option.key)}
                    refused={typed.refused.get(option.key)} pending={false} />
       ))}
     </section>

@@ -27,6 +27,16 @@ export class DraftOptions implements OptionOwner {
     this.model.edit(with_option(this.model.draft, key, value === option.default ? null : value), key);
   }
 
+  /// Dragging is one step of undo.
+  slide(key: string, value: number): void {
+    const option = this.model.view.value.training?.options.find((o) => o.key === key);
+    if (option === undefined) return;
+    this.forget(key);
+    // As many digits as a step of the slider is worth; ends as they are.
+    const rounded = option.whole ? Math.round(value) : Number(value.toPrecision(3));
+    this.model.edit(with_option(this.model.draft, key, rounded === option.default ? null : rounded), key, `slide ${key}`);
+  }
+
   refuse(key: string, why: string, typed: string): void {
     const { errors, refused } = this.typed.value;
     this.typed.set({ errors: new Map(errors).set(key, why), refused: new Map(refused).set(key, typed) });

@@ -1,6 +1,7 @@
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { YuvFrame } from "../link/frame_bytes";
 import { useValue } from "../link/observable";
+import { ClassDot } from "./class_dot";
 import { title_of } from "./color_class";
 import type { ColorsSession } from "./colors_session";
 import { FramePainter } from "./frame_painter";
@@ -13,6 +14,16 @@ export function FilmStrip({ colors }: { colors: ColorsSession }) {
   const { training, history } = useValue(colors.training.view);
   const samples = history.present.samples;
   const images = training?.images ?? [];
+  const strip = useRef<HTMLUListElement>(null);
+  useEffect(() => {
+    // The shown one is in sight, also when it was just kept; only the strip moves, not the page.
+    const list = strip.current!;
+    const frame = list.querySelector<HTMLElement>("[aria-pressed=true]");
+    if (frame === null) return;
+    const [begin, end] = [frame.offsetLeft - list.offsetLeft, frame.offsetLeft - list.offsetLeft + frame.offsetWidth];
+    if (begin < list.scrollLeft) list.scrollLeft = begin - 8;
+    else if (end > list.scrollLeft + list.clientWidth) list.scrollLeft = end - list.clientWidth + 8;
+  }, [shown, images.length]);
   return (
     <section class="film" aria-label="Pictures">
       <div class="row">
@@ -23,7 +34,7 @@ export function FilmStrip({ colors }: { colors: ColorsSession }) {
         </button>
         {shown.kind === "kept" && <Forget key={shown.id} colors={colors} id={shown.id} />}
       </div>
-      <ul class="strip">
+      <ul ref={strip} class="strip">
         <li>
           <button type="button" class="frame" aria-pressed={shown.kind === "live"} aria-keyshortcuts="l" title="live picture (l)" data-show="live"
                   onClick={() => colors.look_at(null)}>
@@ -38,7 +49,7 @@ export function FilmStrip({ colors }: { colors: ColorsSession }) {
               <button type="button" class="frame" aria-pressed={shown.kind === "kept" && shown.id === id} data-image={id}
                       title={`${name}${kept ? "" : "; only in the robot's memory until it is saved with a sample"}`} onClick={() => colors.look_at(id)}>
                 <Thumb frame={loaded.get(id) ?? null} />
-                <span>{name}{!kept && <span class="mark" aria-label="not saved yet">●</span>}</span>
+                <span class="name">{name}{!kept && <span class="mark" aria-label="not saved yet">●</span>}</span>
                 <small class="faint">{count === 0 ? "no samples" : `${count} ${count === 1 ? "sample" : "samples"}`}</small>
               </button>
             </li>
@@ -101,7 +112,7 @@ function SampleList({ colors, id }: { colors: ColorsSession; id: string }) {
       <ul>
         {samples.map((sample, i) => (
           <li key={i} class={sample === selected ? "chosen" : ""}>
-            <span class={`dot-of ${sample.class}`} aria-hidden="true" />
+            <ClassDot color={sample.class} />
             <button type="button" class="plain" onClick={() => { colors.choose_tool("select"); colors.selected.set(sample); }}>
               {title_of(sample.class)}, {kind_of(sample)}{"mask" in sample ? ` ${sample.mask}` : ""}
             </button>

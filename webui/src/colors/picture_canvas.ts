@@ -1,4 +1,5 @@
 import { apply, inverse } from "../canvas/transform";
+import type { YuvFrame } from "../link/frame_bytes";
 import type { Point } from "../scene";
 import type { Classifier } from "./classify";
 import type { ColorsSession } from "./colors_session";
@@ -26,6 +27,7 @@ export class PictureCanvas {
   private hover: Point | null = null;
   private requested = 0;
   private measured: Classifier | null = null;
+  private shape = "";
   private readonly ends: (() => void)[] = [];
 
   constructor(
@@ -105,6 +107,7 @@ export class PictureCanvas {
     context.fillStyle = "#0c1218";
     context.fillRect(0, 0, canvas.width, canvas.height);
     if (frame === null) return;
+    this.fit_to(frame);
     painter.paint({ frame, mode: colors.mode.value, opacity: colors.opacity.value, classifier, in_use });
     const to_canvas = canvas_from_image(this.view!, frame, canvas);
     context.imageSmoothingEnabled = to_canvas.a < 1;
@@ -118,6 +121,15 @@ export class PictureCanvas {
       this.measured = classifier;
       if (drawn_at !== null) performance.measure("resegmented", { start: drawn_at, end: performance.now() });
     }
+  }
+
+  /// The canvas has the picture's shape; the observer of its size draws again.
+  private fit_to({ width, height }: YuvFrame): void {
+    const shape = `${width} / ${height}`;
+    if (this.shape === shape) return;
+    if (this.shape !== "") this.colors.view.set(null);   // what was zoomed to is elsewhere in a picture of another size
+    this.shape = shape;
+    this.canvas.style.aspectRatio = shape;
   }
 
   private draw_samples(): void {

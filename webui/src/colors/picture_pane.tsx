@@ -1,13 +1,14 @@
 import { useEffect, useRef, useState } from "preact/hooks";
 import { count } from "../format";
 import { useValue } from "../link/observable";
+import { ClassDot } from "./class_dot";
 import { color_classes, title_of } from "./color_class";
 import { type ColorsSession, type Mode, modes } from "./colors_session";
 import { type Tool, tools } from "./drawing";
 import { kind_of } from "./shapes";
 import { PictureCanvas } from "./picture_canvas";
 
-const mode_titles: Record<Mode, string> = { picture: "Picture", luma: "Y", overlay: "Classes over it", labels: "Classes", difference: "Difference" };
+const mode_titles: Record<Mode, string> = { picture: "Picture", luma: "Y", overlay: "Overlay", labels: "Classes", difference: "Difference" };
 const tool_keys: Record<Tool, string> = { polygon: "p", rectangle: "r", brush: "b", select: "s" };
 
 /// The picture that is shown, what is drawn on it, and the tools for that.
@@ -35,7 +36,7 @@ export function PicturePane({ colors }: { colors: ColorsSession }) {
     <section class="looked-at" aria-label="Picture">
       <ModeBar colors={colors} />
       <div class={`stage-of-picture ${tool}`}>
-        <canvas ref={canvas} tabIndex={0} data-show="color-picture"
+        <canvas ref={canvas} tabIndex={0} role="application" data-show="color-picture"
                 aria-label="picture to draw samples on; arrow keys move a cross, Enter does what a click would, n selects the next sample" />
         <PictureWords colors={colors} />
         <div class="zooms">
@@ -45,6 +46,7 @@ export function PicturePane({ colors }: { colors: ColorsSession }) {
         </div>
       </div>
       <ToolBar colors={colors} />
+      <ClassDots colors={colors} />
       <ProbeLine colors={colors} />
     </section>
   );
@@ -95,6 +97,20 @@ function PictureWords({ colors }: { colors: ColorsSession }) {
       <span class={`what ${shown.kind === "live" ? "is-live" : ""}`}>{shown.kind === "live" ? "live" : shown.kind === "keeping" ? "keeping" : name}</span>
       {!is_there && <p class="no-picture">{shown.kind === "live" ? "no live picture yet" : "the picture is on its way"}</p>}
     </>
+  );
+}
+
+/// On narrow pages the table of classes is far below; they can be chosen here too.
+function ClassDots({ colors }: { colors: ColorsSession }) {
+  const { color: chosen } = useValue(colors.training.view);
+  return (
+    <div class="class-dots" role="group" aria-label="class to draw">
+      {color_classes.map((color) => (
+        <button key={color} type="button" aria-pressed={color === chosen} aria-label={title_of(color)} title={title_of(color)} onClick={() => colors.choose(color)}>
+          <ClassDot color={color} />
+        </button>
+      ))}
+    </div>
   );
 }
 

@@ -1,6 +1,5 @@
 import { browser_world, Channel } from "../link/channel";
 import { type YuvFrame, parse_frame } from "../link/frame_bytes";
-import { NewestDecoder } from "../link/newest";
 import { Observable } from "../link/observable";
 import type { TrainingApi } from "../link/training_api";
 import { reason, type TrainingModel } from "./training_model";
@@ -19,26 +18,28 @@ export class Pictures {
   readonly loaded = new Observable<ReadonlyMap<string, YuvFrame>>(new Map());
   /// The live picture is also wanted while a kept one is shown.
   readonly preview = new Observable(true);
+  /// As they were when they were looked at last.
+  private names = new Map<string, string>();
   private is_open = false;
   private holding: Promise<string | null> | null = null;
   private readonly loading = new Set<string>();
   /// Could not be had; asked again when they are chosen.
   private readonly given_up = new Set<string>();
   private readonly channel: Channel;
-  private readonly decoder = new NewestDecoder<Blob, YuvFrame>(async (blob) => parse_frame(await blob.arrayBuffer()), (frame) => {
-    if (!this.frozen.value) this.live.set(frame);
-  });
+  /// Messages that were no frames.
+  broken = 0;
 
   constructor(
     private readonly api: TrainingApi,
     private readonly training: TrainingModel,
     private readonly frozen: Observable<boolean>,
   ) {
-    this.channel = new Channel(browser_world("/ws/frame"), (data) => {
-      if (data instanceof Blob) this.decoder.put(data);
-    }, () => {});
+    this.channel = new Channel(browser_world("/ws/frame"), (data) => this.message(data), () => {}, "arraybuffer");
     for (const source of [frozen, this.shown, this.preview]) source.subscribe(() => this.listen());
-    training.view.subscribe(() => void this.load_next());
+    training.view.subscribe(() => {
+      this.drop_gone();
+      void this.load_next();
+    });
   }
 
   open(): void {
@@ -54,9 +55,22 @@ export class Pictures {
 
   /// Frames are large: they come only while they are looked at.
   listen(): void {
-    const wanted = this.is_open && !document.hidden && !this.frozen.value && (this.shown.value.kind === "live" || this.preview.value);
+    const stands = this.frozen.value && this.live.value !== null;
+    const wanted = this.is_open && !document.hidden && !stands && (this.shown.value.kind === "live" || this.preview.value);
     if (wanted) this.channel.start();
     else this.channel.stop();
+  }
+
+  /// Newest only: what comes before the screen is ready replaces what came before it.
+  private message(data: unknown): void {
+    // Frozen before there was any, the first one stands.
+    if (this.frozen.value && this.live.value !== null) return;
+    try {
+      if (data instanceof ArrayBuffer) this.live.set(parse_frame(data));
+    } catch {
+      ++this.broken;
+    }
+    if (this.frozen.value) this.listen();
   }
 
   retry(): void {
@@ -127,6 +141,21 @@ export class Pictures {
     } finally {
       this.loading.delete(id);
     }
+  }
+
+  /// A robot that was started anew may give their ids to others.
+  private drop_gone(): void {
+    const images = this.training.view.value.training?.images ?? [];
+    const is_there = (id: string): boolean => {
+      const image = images.find((other) => other.id === id);
+      const name = this.names.get(id);
+      return image !== undefined && (name === undefined || name === image.name);
+    };
+    const left = [...this.loaded.value].filter(([id]) => is_there(id));
+    this.names = new Map(images.map(({ id, name }) => [id, name]));
+    if (left.length < this.loaded.value.size) this.loaded.set(new Map(left));
+    const shown = this.shown.value;
+    if (shown.kind === "kept" && this.training.view.value.training !== null && !images.some(({ id }) => id === shown.id)) this.show_live();
   }
 
   /// One after another, for the film strip.

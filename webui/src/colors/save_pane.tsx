@@ -71,9 +71,11 @@ function Past({ colors }: { colors: ColorsSession }) {
   );
 }
 
-function local_time(utc: string): string {
-  const date = new Date(utc);
-  return Number.isNaN(date.getTime()) ? utc : date.toLocaleString(undefined, { dateStyle: "medium", timeStyle: "short" });
+/// A time in UTC as people here read it; as in names of files, its colons may be dashes, and it may have a number after it.
+export function local_time(utc: string): string {
+  const match = /^(\d{4}-\d\d-\d\d)T(\d\d)[:-](\d\d)[:-](\d\d)(?:\.\d+)?Z/.exec(utc);
+  const date = new Date(match === null ? NaN : `${match[1]}T${match[2]}:${match[3]}:${match[4]}Z`);
+  return Number.isNaN(date.getTime()) ? utc : date.toLocaleString(undefined, { dateStyle: "medium", timeStyle: "medium" });
 }
 
 /// The worst class is what a team has to know.

@@ -16,6 +16,7 @@ class Server implements TrainingApi {
   version = 3;
   draft: Draft = { samples: [], options: {}, brightness: {} };
   saved = true;
+  images: ImageEntry[] = [];
   is_held = false;
   fault: Error | null = null;
   /// The request is done, but its answer is lost.
@@ -52,7 +53,7 @@ class Server implements TrainingApi {
     this.saved = false;
   }
   private told(): Training {
-    return { version: this.version, is_saved: this.saved, range: "limited", files: { samples: "s", colors: "c", images: "i", refusal: "" }, images: [],
+    return { version: this.version, is_saved: this.saved, range: "limited", files: { samples: "s", colors: "c", images: "i", refusal: "" }, images: this.images,
       samples: this.draft.samples, options: options_of(this.draft, known), brightness: this.draft.brightness, history: [] };
   }
   private made(seen: ColorClass): Result {
@@ -195,7 +196,7 @@ describe("another browser", () => {
     await clock.ring(2000);
     expect(xs(model.draft)).toEqual([70]);
     expect(model.view.value.result?.version).toBe(server.version);
-    expect(model.view.value.history.undoes).toBe("change in another browser");
+    expect(model.view.value.history.undoes).toBe("change from elsewhere");
     expect(model.view.value.is_saved).toBe(false);
   });
 
@@ -219,6 +220,28 @@ describe("another browser", () => {
     expect(xs(model.draft)).toEqual([1]);
     expect(xs(server.draft)).toEqual([1]);
     expect(model.view.value.notice).toBe("");
+  });
+});
+
+describe("a server that was started anew", () => {
+  const picture = (id: string, name: string, kept: boolean): ImageEntry => ({ id, name, width: 9, height: 9, kept });
+
+  test("gives pictures other ids: samples follow those that are in files, and no step before can mean another picture", async () => {
+    const { server, clock, model } = await opened();
+    server.images = [picture("1", "a.png", true), picture("2", "live", false), picture("3", "b.png", true)];
+    await clock.ring(2000);
+    for (const image of ["1", "2", "3"]) model.edit(with_sample(model.draft, { ...sample(Number(image)), image }), "sample");
+    await settle();
+    server.version = 0;
+    server.draft = { samples: [{ ...sample(3), image: "1" }], options: {}, brightness: {} };
+    server.images = [picture("1", "b.png", true), picture("2", "a.png", true)];
+    await clock.ring(2000);
+    expect(model.draft.samples.map(({ image }) => image)).toEqual(["1"]);
+    expect(model.view.value.notice).toBe(changed_elsewhere);
+    model.undo();
+    await settle();
+    expect(server.draft.samples.map((s) => [s.image, "rectangle" in s && s.rectangle[0]])).toEqual([["2", 1], ["1", 3]]);
+    expect(model.view.value.history.undoes).toBeNull();
   });
 });
 
@@ -305,8 +328,12 @@ test("a picture is needed as long as undo or redo may need it", async () => {
 test("quality is asked when the draft is left alone, and forgotten with the next edit", async () => {
   const { server, clock, model, add } = await opened();
   await clock.ring(700);
-  expect(model.view.value.quality?.version).toBe(server.version);
+  expect(server.asked).not.toContain("quality");   // there is nothing to judge
   add(1);
+  await settle();
+  await clock.ring(700);
+  expect(model.view.value.quality?.version).toBe(server.version);
+  add(2);
   expect(model.view.value.quality).toBeNull();
   await settle();
   await clock.ring(700);

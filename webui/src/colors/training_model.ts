@@ -42,7 +42,7 @@ const retry_ms = 1000;
 const quality_delay_ms = 700;
 const watch_ms = 2000;
 
-export const changed_elsewhere = "Samples or parameters were changed in another browser. Theirs are shown now, and undo brings yours back.";
+export const changed_elsewhere = "Samples or parameters were changed elsewhere, in another browser or because the program was started anew. Those are shown now, and undo brings yours back.";
 
 /// The draft here, and the server that trains it. At most one request that changes something is on its way; what is edited meanwhile waits, and only its
 /// newest is sent. Nothing that was edited here is ever lost: what another browser did becomes one more step of the history.
@@ -209,6 +209,8 @@ export class TrainingModel {
 
   /// Theirs, when it is not what this page sent, is one more step: nothing of ours is lost.
   private take(training: Training): void {
+    // Versions only grow, as long as it is the same server.
+    if (training.version < this.version) this.begin_anew(training);
     const { history } = this.view.value;
     const theirs = draft_of(training);
     const same = (draft: Draft | null): boolean => draft !== null && same_draft(draft, theirs, training.options);
@@ -225,12 +227,30 @@ export class TrainingModel {
       this.update({ training });
     } else {
       this.accepted = theirs;
-      this.update({ training, history: history.edit(theirs, "change in another browser"), notice: changed_elsewhere, quality: null });
+      this.update({ training, history: history.edit(theirs, "change from elsewhere"), notice: changed_elsewhere, quality: null });
       this.seen = null;
     }
     if (training.is_saved) this.saved = theirs;
     else if (same(this.saved)) this.saved = null;
     this.update({ is_saved: this.is_saved(this.draft) });
+  }
+
+  /// The server was started anew, and gives its pictures ids of its own: what is drawn here is kept where the picture is in a file, and is still there.
+  /// Steps before are not: their ids may mean others now.
+  private begin_anew(training: Training): void {
+    const new_id = (id: string): string | null => {
+      const before = this.view.value.training?.images.find((image) => image.id === id);
+      const after = training.images.filter(({ name }) => name === before?.name);
+      return before?.kept && after.length === 1 ? after[0]!.id : null;
+    };
+    const samples = this.draft.samples.flatMap((sample) => {
+      const image = new_id(sample.image);
+      return image === null ? [] : [{ ...sample, image }];
+    });
+    this.sent.clear();
+    this.accepted = this.saved = null;
+    this.seen = null;
+    this.update({ history: History.of({ ...this.draft, samples }) });
   }
 
   /// Sends until nothing is left to send. One at a time: who asks while it runs waits for the same.
@@ -315,7 +335,8 @@ export class TrainingModel {
 
   private ask_quality_later(): void {
     this.cancels.quality?.();
-    if (this.is_open) this.cancels.quality = this.clock.after(quality_delay_ms, () => void this.ask_quality());
+    // Without samples there is nothing to judge.
+    if (this.is_open && this.draft.samples.length > 0) this.cancels.quality = this.clock.after(quality_delay_ms, () => void this.ask_quality());
   }
 
   private async ask_quality(): Promise<void> {

@@ -20,6 +20,8 @@ interface Props {
   model: OptionOwner;
   /// What reset goes back to, in words.
   usual?: string;
+  /// With it, there is a slider too; it is told every value on the way.
+  slide?: (value: number) => void;
   error: string | undefined;
   refused: string | undefined;
   pending: boolean;
@@ -27,7 +29,7 @@ interface Props {
 
 /// One number. Enter, or leaving the field, asks for it; Escape takes back what was typed. A text field: a number field would swallow
 /// what is no number, and turn with the mouse wheel.
-export function OptionRow({ option, model, usual = "the robot file's value", error, refused, pending }: Props) {
+export function OptionRow({ option, model, usual = "the robot file's value", slide, error, refused, pending }: Props) {
   const field = useRef<HTMLInputElement>(null);
   const shown = refused ?? String(option.value);
   useEffect(() => {
@@ -71,6 +73,10 @@ export function OptionRow({ option, model, usual = "the robot file's value", err
       <small id={`${id}-range`} class="range">
         {option.low} to {option.high}{suffix && ` ${suffix}`}{option.whole && ", whole"} · default {option.default}
       </small>
+      {slide && (
+        <input type="range" class="slide" min={option.low} max={option.high} step={option.whole ? 1 : (option.high - option.low) / 200} value={option.value}
+               aria-label={option.key} onInput={(event) => slide(Number(event.currentTarget.value))} />
+      )}
       {error && <p id={`${id}-error`} class="error" role="alert" data-show={`error-${option.key}`}>{error}</p>}
     </div>
   );
