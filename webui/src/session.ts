@@ -5,6 +5,7 @@ import { frame_of_jpeg } from "./link/jpeg";
 import { Live } from "./link/live";
 import { NewestDecoder } from "./link/newest";
 import { Observable } from "./link/observable";
+import { RecordingModel } from "./live/recording_model";
 import { StagesModel } from "./stages/model";
 
 /// A picture, and the frame it shows where the server says so.
@@ -28,6 +29,7 @@ export class Session {
   readonly server = new Observable<ServerState | null>(null);
   readonly condition = new Observable<Condition>({ tone: "warning", text: "connecting" });
   readonly stages: StagesModel;
+  readonly recording = new RecordingModel();
   private trouble = "";
   private decoded: Picture | null = null;
   private readonly decoder = new NewestDecoder<Blob, Picture>(decode, (picture) => {
@@ -99,6 +101,7 @@ export class Session {
       const before = this.server.value;
       this.trouble = "";
       this.server.set(state);
+      this.recording.told(state.recording ?? null);
       // Somebody else, or the robot file, may have changed the stages; a server that was started anew has its own.
       if (before !== null && (before.configuration.taken_over !== state.configuration.taken_over || state.frames < before.frames)) {
         void this.stages.refresh();
