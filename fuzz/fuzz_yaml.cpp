@@ -13,6 +13,7 @@
 #include "tassilo/files/field_file.h"
 #include "tassilo/files/robot_file.h"
 #include "tassilo/files/samples_file.h"
+#include "tassilo/files/start_state_file.h"
 
 namespace {
 
@@ -51,6 +52,20 @@ void samples(std::string_view text) {
             "written samples read back equal");
 }
 
+void field(std::string_view text) {
+  FieldModel first;
+  if (!accepted([&] { first = field_from_yaml(text, "field.yaml"); })) return;
+  expects(field_from_yaml(field_yaml(first), "field.yaml") == first, "a written field reads back equal");
+}
+
+void start_state(std::string_view text) {
+  StartState first;
+  if (!accepted([&] { first = start_state_from_yaml(text, "state.yaml"); })) return;
+  const std::string written = start_state_yaml(first);
+  expects(start_state_yaml(start_state_from_yaml(written, "again.yaml")) == written,
+          "a written state reads back equal");
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -60,7 +75,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   colors(text);
   samples(text);
   accepted([&] { halcon_camera_from_yaml(text, "halcon.yaml"); });
-  accepted([&] { field_from_yaml(text, "field.yaml"); });
+  field(text);
+  start_state(text);
   accepted([&] { robot_from_yaml(text, "robot.yaml"); });
   return 0;
 }

@@ -8,7 +8,7 @@ import subprocess
 import sys
 import unittest
 
-from program import DATA, ROOT, ProgramTest, main
+from program import DATA, ROOT, ProgramTest, main, without_timing
 
 RECORDING = DATA / "d01_approach"
 TIMEOUT_S = 240  # of all steps
@@ -30,6 +30,14 @@ class Browser(ProgramTest):
             self.skipTest(done.stdout.strip())
         self.assertEqual(done.returncode, 0, done.stdout)
         self.assertIn("all steps passed", done.stdout)
+        # What was recorded there is seen again.
+        parts = list((self.folder / "recordings").iterdir())
+        self.assertTrue(parts)
+        for part in parts:
+            self.succeeds("run", "--robot", part / "robot.yaml", "--source", part / "video.mkv", "--odometry", part / "odometry.jsonl", "--output",
+                          "again.jsonl", "--quiet")
+            self.assertEqual([without_timing(scene) for scene in self.scenes("again.jsonl")],
+                             [without_timing(scene) for scene in self.scenes(part / "scenes.jsonl")])
 
 
 if __name__ == "__main__":

@@ -114,6 +114,23 @@ TEST_F(Lossless, WhatWasWrittenIsThereBeforeTheEnd) {
   }
 }
 
+TEST_F(Lossless, OneFrameIsAVideo) {
+  for (const double gap : {0.001, 0.1, 100.}) {
+    SCOPED_TRACE(gap);
+    for (int count = 1; count <= 3; ++count) {
+      LosslessVideo video(path("a.mkv"));
+      for (int k = 0; k < count; ++k) {
+        Frame frame = noise(PixelFormat::yuyv422, 64, 48, ColorRange::limited, 1);
+        frame.index = k;
+        frame.t = 7 + gap * k;
+        video.write(frame);
+      }
+      video.finish();
+      EXPECT_EQ(read_all(path("a.mkv")).size(), static_cast<std::size_t>(count));
+    }
+  }
+}
+
 // A cut anywhere: whole frames before it, then an error or the end, never another picture.
 TEST_F(Lossless, CutAnywhereTheFramesBeforeAreWhole) {
   std::vector<Frame> given;

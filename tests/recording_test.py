@@ -15,6 +15,7 @@ import subprocess
 import sys
 import threading
 import time
+import unittest
 
 import camera_test
 from program import DATA, TIMEOUT_S, ProgramTest, main, raw_bytes, train_colors, without_timing
@@ -22,6 +23,7 @@ from serve_test import RECORDING, Channel, Served
 
 DEVICE = "/dev/video42"
 FAKE = PROGRAM = None
+PLUGIN = os.environ.get("TASSILO_PLUGIN")
 NAME = r"\d{4}-\d\d-\d\dT\d\d-\d\d-\d\dZ(-\d+)?"
 
 
@@ -80,6 +82,14 @@ class Run(ProgramTest, Replayed):
         scenes = self.expect_replays(part)
         self.assertEqual([scene["image"] for scene in scenes], [f"p{k}.png" for k in range(1, 6)])
         self.assertEqual(seen(scenes), seen(self.scenes("run.jsonl")))
+
+    @unittest.skipUnless(PLUGIN, "TASSILO_PLUGIN, the plug-in for tests, is not set")
+    def test_plugins_go_with_it(self):
+        self.write("robot.yaml", f"camera: {RECORDING / 'camera.yaml'}\nfield: msl98\nplugins: [{PLUGIN}]\nvision: {{balls: blind}}\n")
+        self.succeeds("run", "--robot", "robot.yaml", "--colors", "div.yaml", "--source", RECORDING / "video.mkv", "--record", "with_plugin", "--quiet")
+        part, = self.parts("with_plugin")
+        self.assertIn(f"  - {pathlib.Path(PLUGIN).name}\n", (part / "robot.yaml").read_text())
+        self.assertFalse([scene for scene in self.expect_replays(part) if scene["balls"]])
 
     def test_a_recording_can_be_recorded(self):
         source = DATA / "d01_approach"
@@ -177,8 +187,9 @@ class Button(Pressed):
         files = sum(path.stat().st_size for part in parts for path in part.iterdir() if path.suffix in (".mkv", ".jsonl"))
         self.assertEqual(state["bytes"], files)
         robot = (parts[-1] / "robot.yaml").read_text()
-        for line in ("robot: {id: 7, team: magenta}", "  free_space_sector: 4", "  ball_max: 3", "  localization: boundary", "the configuration was changed"):
+        for line in ("robot: {id: 7, team: magenta}", "  free_space_sector: 4", "  ball_max: 3", "  localization: boundary"):
             self.assertIn(line, robot)
+        self.assertEqual(len([part for part in parts if "the configuration was changed" in (part / "robot.yaml").read_text()]), 2)
         self.assertNotIn(str(self.folder), robot)
 
     def test_is_begun_and_ended_as_often_as_wanted_and_nothing_is_overwritten(self):

@@ -152,6 +152,27 @@ async function main(url, browser, screenshots) {
     await picture("live");
   });
 
+  await step("a recording is begun and ended by the keyboard, and its numbers are the server's", async () => {
+    const bar = page.locator('[data-show="recording"]');
+    await page.getByRole("button", { name: "Record", exact: true }).focus();
+    await page.keyboard.press("Enter");
+    const stop = page.getByRole("button", { name: "Stop recording" });
+    await stop.waitFor();
+    await until("frames are recorded", async () => Number((await page.locator('[data-show="recording-frames"]').innerText()).replace(/\D/g, "")) >= 15);
+    assert.match(await bar.innerText(), /recording 0:\d\d, \d+ frames, [\d.]+\s?MB/);
+    await picture("recording");
+    await stop.press("Enter");
+    await page.getByRole("button", { name: "Record", exact: true }).waitFor();
+    const last = await until("it is finished", async () => {
+      const state = await (await fetch_api(url, "/api/recording")).json();
+      return !state.on && !state.finishing && state;
+    });
+    assert.deepEqual([last.trouble, last.dropped], ["", 0]);
+    await until("the page shows it", async () => (await page.locator('[data-show="recording-frames"]').innerText()) === String(last.frames));
+    assert.equal(await page.locator('[data-show="recording-place"]').getAttribute("title"), `${last.folder}/${last.name}`);
+    await bar.getByText("recorded", { exact: true }).waitFor();
+  });
+
   await step("another alternative takes effect while running", async () => {
     await view("Stages");
     await page.locator('[data-stage="localization"] input[value="boundary"]').click();

@@ -31,6 +31,25 @@ for (const option of every_option.values()) option.value = filed(option);
 const training = new MockTraining();
 const state = { frame: 0, taken_over: 0, sent: 0, dropped: 0 };
 
+const recording = { on: false, finishing: false, folder: "/home/robot/recordings", name: "", parts: 0, seconds: 0, frames: 0, bytes: 0, dropped: 0, trouble: "" };
+let recording_since = 0;
+
+/// As if it were on the disk at once.
+function recording_now() {
+  if (recording.on) recording.seconds = (Date.now() - recording_since) / 1000;
+  return recording;
+}
+
+function record(on) {
+  if (on && !recording.on) {
+    recording_since = Date.now();
+    const name = new Date().toISOString().slice(0, 19).replaceAll(":", "-") + "Z";
+    Object.assign(recording, { name, parts: 1, frames: 0, bytes: 0, seconds: 0, trouble: "" });
+  }
+  recording_now();
+  recording.on = on;
+}
+
 /// Why a change cannot be made; empty when it can.
 function refusal(key, value) {
   const stage = stages.find((s) => s.key === key && s.alternatives.length > 0);
@@ -99,6 +118,16 @@ async function handle(request, response) {
   const { pathname, searchParams } = new URL(request.url, "http://mock");
   if (pathname.startsWith("/api/training")) return answer_training(request, response, pathname.slice("/api/training".length), searchParams);
   if (pathname === "/api/state" && request.method === "GET") return answer(response, 200, JSON.stringify(server_state()));
+  if (pathname === "/api/recording" && request.method === "GET") return answer(response, 200, JSON.stringify(recording_now()));
+  if (pathname === "/api/recording" && request.method === "PUT") {
+    let on;
+    try {
+      ({ on } = JSON.parse(await body_of(request)));
+    } catch { /* told below */ }
+    if (typeof on !== "boolean") return answer(response, 400, "on is no boolean, must be true or false", "text/plain");
+    record(on);
+    return answer(response, 200, JSON.stringify(recording_now()));
+  }
   if (pathname === "/api/stages" && request.method === "GET") return answer(response, 200, JSON.stringify(stages));
   if (pathname === "/api/stages" && request.method === "PUT") {
     let change;
@@ -135,7 +164,8 @@ function server_state() {
     version: "0.1.0", robot: "robot.yaml", source: { name: "mock", description: `${scenes.length} recorded scenes, over and over` },
     frame: state.frame, t: state.frame / rate_hz, rate_hz, frames: state.frame + 1, dropped: 0,
     configuration: { taken_over: state.taken_over, refusal: "" },
-    web: { clients: sockets.clients.size, sent: state.sent, dropped: state.dropped }, ended: false,
+    recording: recording_now(),
+    web: { viewers: [...sockets.clients].filter(({ channel }) => channel === "/ws/scene").length, clients: sockets.clients.size, sent: state.sent, dropped: state.dropped }, ended: false,
     field: {
       length: 8.22, width: 4.575, circle_radius: 1.0, halfway_line: true, areas: [{ depth: 1.0, width: 2.6 }],
       goals: [{ side: "+x", color: "blue", width: 1.5, depth: 0.5 }, { side: "-x", color: "yellow", width: 1.5, depth: 0.5 }],
@@ -171,6 +201,10 @@ function numbered(jpeg, frame) {
 
 setInterval(() => {
   ++state.frame;
+  if (recording.on) {
+    ++recording.frames;
+    recording.bytes += 60_000;
+  }
   publish("/ws/scene", JSON.stringify(scene_now()));
   publish("/ws/picture", numbered(pictures[state.frame % pictures.length], state.frame));
   publish("/ws/frame", training.frame(state.frame, state.frame / rate_hz));

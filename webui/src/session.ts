@@ -6,6 +6,7 @@ import { frame_of_jpeg } from "./link/jpeg";
 import { Live } from "./link/live";
 import { NewestDecoder } from "./link/newest";
 import { Observable } from "./link/observable";
+import { RecordingModel } from "./live/recording_model";
 import { StagesModel } from "./stages/model";
 
 /// A picture, and the frame it shows where the server says so.
@@ -30,6 +31,7 @@ export class Session {
   readonly condition = new Observable<Condition>({ tone: "warning", text: "connecting" });
   readonly stages: StagesModel;
   readonly colors = new ColorsSession(this.live.frozen);
+  readonly recording = new RecordingModel();
   private trouble = "";
   private pictures_wanted = true;
   private decoded: Picture | null = null;
@@ -111,6 +113,7 @@ export class Session {
       const before = this.server.value;
       this.trouble = "";
       this.server.set(state);
+      this.recording.told(state.recording ?? null);
       // Somebody else, or the robot file, may have changed the stages; a server that was started anew has its own.
       if (before !== null && (before.configuration.taken_over !== state.configuration.taken_over || state.frames < before.frames)) {
         void this.stages.refresh();

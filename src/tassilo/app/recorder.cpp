@@ -42,6 +42,25 @@ bool made(const fs::path& folder) {
   return is_new;
 }
 
+/// What else runs on the robot needs a disk, too.
+void check_room(const fs::path& folder) {
+  std::error_code problem;
+  const fs::space_info space = fs::space(folder, problem);
+  constexpr std::uintmax_t mega = 1 << 20;
+  if (!problem && space.available < Recorder::kLeastFree)
+    throw Error(folder.string(), "has " + std::to_string(space.available / mega) + " MiB left on its disk, must have " +
+                                     std::to_string(Recorder::kLeastFree / mega) + " for other things");
+}
+
+void make_writable(const fs::path& folder) {
+  std::error_code problem;
+  fs::create_directories(folder, problem);
+  if (problem) throw Error(folder.string(), "cannot be made a folder for recordings: " + problem.message());
+  if (::access(folder.c_str(), W_OK | X_OK) != 0)
+    throw Error(folder.string(), "is no folder for recordings that can be written into");
+  check_room(folder);
+}
+
 }  // namespace
 
 Recorder::Recorder(fs::path folder, bool waits)
@@ -61,14 +80,11 @@ Recorder::~Recorder() {
 }
 
 void Recorder::start() {
+  // Before the mutex: the vision waits for it, and must not wait for a disk.
+  make_writable(folder_);
   const std::lock_guard lock(mutex_);
   if (state_.on) return;
   if (over_) throw Error("recording", "cannot begin: no more frames come");
-  std::error_code problem;
-  fs::create_directories(folder_, problem);
-  if (problem) throw Error(folder_.string(), "cannot be made a folder for recordings: " + problem.message());
-  if (::access(folder_.c_str(), W_OK | X_OK) != 0)
-    throw Error(folder_.string(), "is no folder that recordings can be written into");
   ++recording_;
   state_ = {};
   state_.on = true;
@@ -236,6 +252,7 @@ void Recorder::write(Item& item) {
   if (const auto now = Clock::now(); now - flushed_at_ > kFlushPause) {
     part_->flush_to_disk();
     flushed_at_ = now;
+    check_room(folder_);
   }
   const std::lock_guard lock(mutex_);
   if (item.recording != recording_) return;

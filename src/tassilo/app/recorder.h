@@ -43,13 +43,14 @@ struct RecordingState {
 ///
 /// A thread of its own encodes and writes, from a queue of at most kMaxWaiting bytes. The vision does not wait for it:
 /// frames that do not fit are not recorded, are counted, and end the part. With `waits`, for sources that lose nothing,
-/// it does. When the disk takes no more, the recording ends and says why; the vision goes on.
+/// it does. When the disk takes no more, or hardly any more, the recording ends and says why; the vision goes on.
 ///
 /// threads  `before`, `after`, `finish` and `news` from the run's thread, the rest from any; only `finish`, and `after`
 ///          with `waits`, wait for the disk
 class Recorder {
  public:
-  static constexpr std::int64_t kMaxWaiting = 64 << 20;  ///< Of pixels and what belongs to them. [B]
+  static constexpr std::int64_t kMaxWaiting = 64 << 20;    ///< Of pixels and what belongs to them. [B]
+  static constexpr std::uintmax_t kLeastFree = 100 << 20;  ///< A recording ends before a disk has less. [B]
 
   /// folder   below which recordings are made; made itself with the first one
   Recorder(std::filesystem::path folder, bool waits);

@@ -158,9 +158,10 @@ class LosslessVideo::Encoder {
   }
 
   void drain() {
-    constexpr std::int64_t kUsualMs = 40;
     while (avcodec_receive_packet(codec_.get(), packet_.get()) >= 0) {
-      packet_->duration = frames_ > 1 ? std::max<std::int64_t>(1, last_stamp_ / (frames_ - 1)) : kUsualMs;
+      // Matroska keeps it of the last frame only, as the end of the video; a guess might look like frames that are
+      // missing.
+      packet_->duration = 1;
       av_packet_rescale_ts(packet_.get(), codec_->time_base, stream_->time_base);
       packet_->stream_index = stream_->index;
       const int code = av_write_frame(output_.get(), packet_.get());

@@ -1,5 +1,7 @@
 // The requests that the server answers; public/openapi.yaml documents them.
 
+import type { Recording } from "../live/recording_model";
+
 export interface FieldPlan {
   length: number;
   width: number;
@@ -19,10 +21,11 @@ export interface ServerState {
   frames: number;
   dropped: number;
   configuration: { taken_over: number; refusal: string };
-  web: { clients: number; sent: number; dropped: number };
+  web: { viewers: number; clients: number; sent: number; dropped: number };
   ended: boolean;
   /// Servers may leave these out.
   latency_ms?: number | null;
+  recording?: Recording;
   field?: FieldPlan | null;
 }
 

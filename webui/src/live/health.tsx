@@ -14,8 +14,8 @@ export function Health({ session }: { session: Session }) {
         <Fact name="source" value={last_part(server.source.name)} title={`${server.source.name}: ${server.source.description}`} />
         <Fact name="robot" value={server.robot} />
         <Fact name="frames" value={`${count(server.frames)}, ${count(server.dropped)} dropped`} bad={server.dropped > 0.01 * server.frames} />
-        {server.latency_ms != null && <Fact name="latency" value={`${fixed(server.latency_ms, 0)} ms`} />}
-        <Fact name="viewers" value={`${server.web.clients} connections`} />
+        {server.latency_ms != null && <Fact name="latency" value={`${fixed(server.latency_ms, 1)} ms`} title="from the capture of a frame to its scene, median of a second" show="latency" />}
+        <Fact name="viewers" value={count(server.web.viewers)} title={`${server.web.clients} connections`} show="viewers" />
         <Fact name="messages" value={`${count(server.web.sent)}, ${count(server.web.dropped)} passed over`} />
         <Fact name="this page" value={`${count(session.skipped)} skipped`} />
         <Fact name="configuration" value={`taken over ${server.configuration.taken_over}×`} show="taken-over" />

@@ -9,6 +9,7 @@ import type { Session } from "../session";
 import { CanvasView } from "./canvas_view";
 import { Health } from "./health";
 import { PictureView } from "./picture_view";
+import { RecordingBar } from "./recording";
 import { Seen } from "./seen";
 import { Tiles } from "./tiles";
 import { Times } from "./times";
@@ -19,6 +20,7 @@ export function LiveView({ session }: { session: Session }) {
       <h1 class="unseen">Live</h1>
       <div class="looks">
         <PictureView picture={session.picture} />
+        <RecordingBar session={session} />
         <div class="plans">
           <RobotPlan session={session} />
           <FieldPlanView session={session} />

@@ -3,7 +3,7 @@ import type { StageTime } from "../link/live";
 import { type Observable, useValue } from "../link/observable";
 
 /// Stages that are no part of the total, which begins with the decoded frame.
-const outside_total = new Set(["decode"]);
+const outside_total = new Set(["decode", "wait"]);
 
 /// Time of each stage, smoothed; bars are shares of the longest.
 export function Times({ timing }: { timing: Observable<readonly StageTime[]> }) {
