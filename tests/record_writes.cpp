@@ -67,7 +67,10 @@ class Record {
   }
   void changed(const std::string& what, const std::string& path, const std::string& to = "") {
     const std::lock_guard lock(mutex_);
-    if (is_of_interest(path)) say(what + " " + path + (to.empty() ? "" : " " + absolute(to)));
+    if (!is_of_interest(path)) return;
+    std::string line = what + " " + path;
+    if (!to.empty()) line.append(" ").append(absolute(to));
+    say(line);
   }
 
   static std::string absolute(const std::string& path) {

@@ -111,6 +111,20 @@ class Served(ProgramTest):
         shutil.copy(RECORDING / "camera.yaml", self.folder / "camera.yaml")
         self.write("robot.yaml", "{camera: camera.yaml, field: msl98}\n")
 
+    def send(self, method, path, value, status=200):
+        got, data, _ = self.ask(method, path, json.dumps(value), {"Content-Type": "application/json"})
+        self.assertEqual(got, status, data)
+        return json.loads(data) if got == 200 else data.decode()
+
+    def training_folder(self):
+        """A robot file with a color table of its own."""
+        training = pathlib.Path(tempfile.mkdtemp(dir=self.folder))
+        shutil.copy(RECORDING / "camera.yaml", training)
+        for name in ("div.yaml", "div.png"):
+            shutil.copy(self.folder / name, training)
+        (training / "robot.yaml").write_text("{camera: camera.yaml, field: msl98, colors: div.yaml}\n")
+        return training
+
 
 class Serve(Served):
     def test_shows_what_it_sees(self):
@@ -191,21 +205,6 @@ class Serve(Served):
         self.until(lambda: json.loads(scenes.receive()[1])["pose"]["kind"] == "model")
         scenes.close()
 
-    def send(self, method, path, value, status=200):
-        got, data, _ = self.ask(method, path, json.dumps(value), {"Content-Type": "application/json"})
-        self.assertEqual(got, status, data)
-        return json.loads(data) if got == 200 else data.decode()
-
-    def served_training(self):
-        """A server whose color table lies in a folder of its own, as its robot file says."""
-        training = pathlib.Path(tempfile.mkdtemp(dir=self.folder))
-        shutil.copy(RECORDING / "camera.yaml", training)
-        for name in ("div.yaml", "div.png"):
-            shutil.copy(self.folder / name, training)
-        (training / "robot.yaml").write_text("{camera: camera.yaml, field: msl98, colors: div.yaml}\n")
-        self.serve(robot=training / "robot.yaml", colors=None)
-        return training
-
     @staticmethod
     def frame_of(data):
         """(width, height, full range, index, Y rows) of the bytes of a frame."""
@@ -230,7 +229,8 @@ class Serve(Served):
         self.assertGreater(self.frame_of(self.ask("GET", f"/api/training/images/{kept['id']}")[1])[3], -1)
 
     def test_colors_are_trained_saved_taken_over_and_rolled_back(self):
-        training = self.served_training()
+        training = self.training_folder()
+        self.serve(robot=training / "robot.yaml", colors=None)
         self.until(lambda: self.get("/api/state")["frames"] > 0)
         before = self.get("/api/training")
         self.assertEqual(before["files"]["refusal"], "")
