@@ -65,10 +65,10 @@ async function main(url, browser, screenshots) {
   const count_is = (wanted) => until(`the server has ${wanted} samples`, async () => (await samples()).length === wanted);
   const changed_percent = async () => Number(/[\d.]+/.exec(await show("changed").innerText())?.[0]);
 
-  const before = await api("GET", "").catch(async () => {
-    await page.goto(url);   // its token becomes a cookie
-    return api("GET", "");
-  });
+  await page.goto(url);   // its token becomes a cookie
+  // A server that was just started has no source yet.
+  await until("the training is there", () => api("GET", "").then(() => true, () => false));
+  const before = await api("GET", "");
   assert.equal(before.files.refusal, "", "the server cannot save, so that cannot be tested");
   let own = before.samples.length;
 

@@ -154,7 +154,7 @@ void LiveView::show(const Frame& frame, const Scene& scene, const VisionWorkspac
   seen_.frame = scene.frame;
   seen_.t = scene.t;
   ++seen_.frames;
-  now_ = configuration;
+  if (!chosen_) now_ = configuration;  // what was chosen meanwhile counts already
   if (drawing_ || !(is_picture_wanted || has_frame_listeners || is_frame_wanted_)) return;
   snapshot_ = {frame, {}};
   if (is_picture_wanted) snapshot_->scenery = {scene, workspace.surface, configuration};
