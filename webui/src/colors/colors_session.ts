@@ -53,6 +53,8 @@ export class ColorsSession {
     });
     this.pictures = new Pictures(api, this.training, frozen);
     this.options = new DraftOptions(this.training);
+    // A telephone is on the radio, which robots need too, and has no room for two pictures.
+    if (matchMedia("(max-width: 700px)").matches) this.pictures.preview.set(false);
     document.addEventListener("visibilitychange", () => this.pictures.listen());
     addEventListener("beforeunload", (event) => {
       if (this.has_unsaved_edits) event.preventDefault();
