@@ -12,9 +12,23 @@
 
 #include "tassilo/base/contract.h"
 #include "tassilo/base/error.h"
+#include "tassilo/files/frames_file.h"
 #include "tassilo/files/odometry_file.h"
 
 namespace {
+
+/// What of them are stamps of frames reads back to the last bit.
+void stamps(const std::string& file) {
+  using namespace tassilo;
+  try {
+    FrameStampReader reader(file);
+    while (const auto stamp = reader.next()) {
+      const std::string line = frame_stamp_line(*stamp);
+      expects(line.find('\n') == std::string::npos, "a stamp is one line");
+    }
+  } catch (const Error&) {
+  }
+}
 
 /// The bytes as a file in memory, overwritten each time: the reader wants a path.
 std::string file_with(const std::uint8_t* data, std::size_t size) {
@@ -29,7 +43,10 @@ std::string file_with(const std::uint8_t* data, std::size_t size) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size > 1 << 16) return 0;
   using namespace tassilo;
+  stamps(file_with(data, size));
   try {
+    for (const OdometryLine& line : read_odometry_lines(file_with(data, size)))
+      expects(read_odometry_line(odometry_line(line), "again") == line, "a written line reads back equal");
     const auto samples = read_odometry(file_with(data, size));
     Odometry odometry(samples.size() + 2), in_order(samples.size() + 2);
     std::map<double, OdometrySample> first;

@@ -192,6 +192,31 @@ class Button(Pressed):
         self.assertEqual(len([part for part in parts if "the configuration was changed" in (part / "robot.yaml").read_text()]), 2)
         self.assertNotIn(str(self.folder), robot)
 
+    def test_a_recording_that_is_played_again_and_again(self):
+        """It begins each time with what was known before its first frame."""
+        self.serve()
+        self.until(lambda: 10 < self.get("/api/state")["frame"] < 20)
+        self.put(True)
+        self.until(lambda: self.recording()["frames"] > 8)
+        self.end()
+        first = self.parts()[0]
+        self.assertTrue((first / "start_state.yaml").exists())
+        length = len(self.expect_replays(first))
+        self.stop()
+        for name in first.iterdir():
+            shutil.copy(name, self.folder / name.name)
+        self.process = self.start("serve", "--robot", "robot.yaml", "--source", "video.mkv", "--odometry", "odometry.jsonl", "--port", "0", "--recordings", "again",
+                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.port = int(re.search(r"http://[\d.]+:(\d+)/", self.process.stdout.readline().decode())[1])
+        self.put(True)
+        self.until(lambda: self.recording()["parts"] > 2)
+        self.end()
+        parts = self.parts("again")
+        for part in parts:
+            self.expect_replays(part)
+        self.assertEqual(len(self.scenes(parts[1] / "scenes.jsonl")), length)
+        self.assertEqual(seen(self.scenes(parts[1] / "scenes.jsonl")), seen(self.scenes(first / "scenes.jsonl")))
+
     def test_is_begun_and_ended_as_often_as_wanted_and_nothing_is_overwritten(self):
         self.serve()
         for body in ("", "{}", "{\"on\": 1}", "[]", "{\"on\": true, \"off\": true}"):

@@ -122,28 +122,28 @@ void Recorder::before(const Frame& frame, const std::shared_ptr<const Configurat
   const std::lock_guard lock(mutex_);
   is_left_out_ = false;
   if (!state_.on) return;
-  const auto* const latest = history.beliefs.latest();
-  const bool begins_anew = (latest != nullptr && latest->t >= frame.t) || (is_part_open_ && frame.t <= last_t_);
   if (is_part_open_ && configuration != configuration_)
     end_part("the configuration was changed");
-  else if (is_part_open_ && begins_anew)
+  else if (is_part_open_ && frame.t <= last_t_)
     end_part("the source began again");
   if (is_part_open_) return;
   is_left_out_ = catches_up_ && waiting_ > kMaxWaiting / 2;
-  if (!is_left_out_) begin_part(frame, configuration, history, odometry, begins_anew);
+  if (!is_left_out_) begin_part(frame, configuration, history, odometry);
 }
 
 void Recorder::begin_part(const Frame& frame, const std::shared_ptr<const Configuration>& configuration,
-                          const VisionHistory& history, const OdometryInput& odometry, bool begins_anew) {
-  const auto* const belief = begins_anew ? nullptr : history.beliefs.latest();
-  const auto* const tracks = history.tracks.latest();
+                          const VisionHistory& history, const OdometryInput& odometry) {
+  // As the vision asks for it: what is not earlier than the frame is of another drive.
+  const auto* const belief = history.beliefs.before(frame.t);
+  const auto* const tracks = history.tracks.before(frame.t);
+  const bool goes_on = belief != nullptr && belief == history.beliefs.latest() && tracks != nullptr;
   catches_up_ = false;
   is_part_open_ = true;
   configuration_ = configuration;
   begin_.emplace(Begin{configuration, std::nullopt, odometry.get() != nullptr, std::exchange(why_next_, "")});
-  if (belief != nullptr && tracks != nullptr) begin_->state = {belief->t, belief->value, tracks->value};
+  if (goes_on) begin_->state = {belief->t, belief->value, tracks->value};
   // What was known before the first frame, as far back as its motion may depend on it.
-  const double from = (belief != nullptr ? belief->t : frame.t) - kReach;
+  const double from = (goes_on ? belief->t : frame.t) - kReach;
   begin_odometry_.clear();
   next_sample_ = 0;
   if (const Odometry* const samples = odometry.get())

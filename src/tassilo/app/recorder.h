@@ -95,7 +95,7 @@ class Recorder {
 
   // With the mutex held.
   void begin_part(const Frame& frame, const std::shared_ptr<const Configuration>& configuration,
-                  const VisionHistory& history, const OdometryInput& odometry, bool begins_anew);
+                  const VisionHistory& history, const OdometryInput& odometry);
   void end_part(std::string why);
   void push(Item item);
   // On the thread.

@@ -127,6 +127,7 @@ class Run {
     tell(fmt::format("{}: {}\n", name(), info_.description));
     if (is_live()) std::fflush(report_);  // somebody watches
     RunSinks sinks(arguments_);
+    if (recorder_ != nullptr && !arguments_.record.empty()) recorder_->start();
     progress_.emplace(!arguments_.quiet && live_ == nullptr, info_.frame_count);
     const auto load_checked = [this](const VisionChanges& changes) { return checked(load(changes)); };
     if (arguments_.watch)

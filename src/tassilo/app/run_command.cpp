@@ -91,7 +91,6 @@ Command add_run(CLI::App& program) {
   return [arguments] {
     if (arguments->record.empty()) return run(*arguments, nullptr, nullptr);
     Recorder recorder(arguments->record, loses_nothing(arguments->source));
-    recorder.start();
     return run(*arguments, nullptr, &recorder);
   };
 }
