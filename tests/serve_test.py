@@ -263,6 +263,7 @@ class Serve(Served):
         self.assertTrue(saved["is_saved"] and saved["images"][0]["kept"])
         self.assertEqual([entry["in_use"] for entry in saved["history"]], [True, False])
         self.assertTrue(saved["history"][0]["notes"].startswith("in the test"))
+        self.assertRegex(saved["history"][0]["date"], r"^20\d\d-\d\d-\d\dT\d\d:\d\d:\d\dZ$")
         self.assertEqual(self.get("/api/training/table"), result["table"])
         self.until(lambda: self.get("/api/state")["configuration"]["taken_over"] > 0)
         self.assertEqual(self.get("/api/state")["configuration"]["refusal"], "")

@@ -77,6 +77,15 @@ json options_json(const TrainingOptions& options) {
   return list;
 }
 
+/// "2026-11-28T01:02:03Z" of the id "2026-11-28T01-02-03Z-2"; other names that people gave stay as they are.
+std::string date_of(std::string id) {
+  constexpr std::size_t length = 20;
+  if (id.size() < length || id[10] != 'T' || id[length - 1] != 'Z') return id;
+  id.resize(length);
+  id[13] = id[16] = ':';
+  return id;
+}
+
 json history_json(const std::vector<FormerColors>& history, const ColorTable& in_use) {
   json list = json::array();
   for (const FormerColors& former : history) {
@@ -88,9 +97,8 @@ json history_json(const std::vector<FormerColors>& history, const ColorTable& in
         quality[std::string(to_string(color))] = {{"precision", share_json(one.precision)},
                                                   {"recall", share_json(one.recall)}};
     }
-    // As files have it: a class without brightness has no cells that mean anything.
     list.push_back({{"id", former.id},
-                    {"date", former.id},
+                    {"date", date_of(former.id)},
                     {"notes", std::move(notes)},
                     {"in_use", former.fault.empty() && former.colors.table == in_use},
                     {"quality", std::move(quality)}});
