@@ -17,9 +17,8 @@ namespace {
 constexpr int kMostSteps = 100;
 
 /// Standard deviation of how far lenses are from a division lens, relative to the radius at the image corner: twice
-/// what is known of any. Fitted as by `OrdinaryCost`: the projections that lenses are designed by, stereographic 0,
-/// equidistant up to 86 degrees .03, orthographic up to 64 degrees .035, equisolid up to 89 degrees .045; ten published
-/// calibrations of lenses of 31 to 89 degrees .004 to .055.
+/// that of the projections that lenses are designed by. Fitted as by `OrdinaryCost`: stereographic 0, equidistant up to
+/// 86 degrees .03, orthographic up to 64 degrees .035, equisolid up to 89 degrees .045.
 constexpr double kUnlikeDivision = .1;
 constexpr int kPriorRadii = 4;       ///< From the axis to the corner; a curve's few degrees of freedom.
 constexpr double kMostPrior = 1.48;  ///< Division lenses end short of 90 degrees. [rad]
