@@ -21,8 +21,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::string samples;
   for (const DraftSample& sample : draft.samples)
     samples.append(samples.empty() ? "" : ",").append(draft_sample_json(sample));
-  const TrainingDraft again = draft_from_json(
-      R"({"version":0,"samples":[)" + samples + R"(],"options":{},"brightness":{}})", "written");
+  const TrainingDraft again =
+      draft_from_json(R"({"version":0,"samples":[)" + samples + R"(],"options":{},"brightness":{}})", "written");
   expects(again.samples == draft.samples, "written samples read back equal");
   return 0;
 }

@@ -13,6 +13,7 @@
 #include "tassilo/app/commands.h"
 #include "tassilo/app/written_files.h"
 #include "tassilo/base/error.h"
+#include "tassilo/calibrate/april_grid.h"
 #include "tassilo/calibrate/intrinsics.h"
 #include "tassilo/files/atomic_file.h"
 #include "tassilo/files/camera_file.h"
@@ -65,6 +66,7 @@ void print_result(const Intrinsics& result) {
   const auto used = std::ranges::count_if(result.views, [](const ViewResult& v) { return v.rejected.empty(); });
   fmt::print("RMS {:.3f} px in {} views", result.rms_px, used);
   if (result.cross_validated_rms_px) fmt::print("; {:.3f} px in views left out", *result.cross_validated_rms_px);
+  if (result.frame_places > 0) fmt::print("\nstraight sides of frames: {} places used", result.frame_places);
   fmt::print(
       "\npoints in {:.0f} % of the image, up to {:.0f} % of the way to the farthest corner; directions known to {:.2f} "
       "px\n",
@@ -126,9 +128,17 @@ int target_command(const TargetArguments& arguments) {
   if (extension != ".svg" && extension != ".pdf" && extension != ".png")
     throw Error("--output", "is " + arguments.output + ", must end in .svg, .pdf or .png");
   TargetSheet sheet;
-  sheet.marks = target.kind == TargetKind::dots ? TargetSheet::Marks::dots : TargetSheet::Marks::checkerboard;
   sheet.columns = target.columns;
   sheet.rows = target.rows;
+  if (target.kind == TargetKind::checkerboard) sheet.marks = TargetSheet::Marks::checkerboard;
+  if (target.kind == TargetKind::april_grid) {
+    sheet.marks = TargetSheet::Marks::tags;
+    sheet.columns = target.columns / 2;
+    sheet.rows = target.rows / 2;
+    sheet.spacing = target.spacing;
+    for (int r = sheet.rows - 1; r >= 0; --r)  // ids begin at the bottom
+      for (int c = 0; c < sheet.columns; ++c) sheet.cells.push_back(tag_cells(r * sheet.columns + c));
+  }
   sheet.pitch = target.pitch;
   sheet.radius = target.radius;
   sheet.caption = to_text(target) + " - print at 100 %, then measure the ruler";
@@ -161,6 +171,7 @@ Command add_intrinsics(CLI::App& calibrate) {
   command->add_option("--radial-terms", options.radial_terms, "radial coefficients to estimate (0: all of the model)")
       ->capture_default_str();
   command->add_flag("--tangential,!--no-tangential", options.tangential, "estimate p1 and p2 of plumb_bob (default)");
+  command->add_flag("--frames,!--no-frames", options.frames, "use the straight sides of dot targets' frames (default)");
   command
       ->add_option("--outlier-ratio", options.outlier_ratio,
                    "points and views so many times as far off as usual are thrown out")

@@ -34,6 +34,7 @@ Look look_at(const Frame& frame, const std::string& name, const std::vector<Targ
   Look look{name, {}, {}};
   for (const Target& target : targets) {
     TargetSearch search = find_target(image, target);
+    for (const std::string& remark : search.remarks) warn(name, remark);
     if (search.view) {
       look.view = views.size();
       look.reason.clear();
@@ -52,8 +53,11 @@ Looks look_at_all(const std::vector<std::string>& locations, const std::vector<T
   for (const std::string& location : locations) {
     FrameSource source = open_source({.location = location, .images_range = ColorRange::full});
     while (const auto frame = source.next()) {
-      const bool is_alone = frame->image.empty() || !fs::is_directory(location);
-      const std::string name = is_alone ? location : (fs::path(location) / frame->image).string();
+      const bool is_in_folder = !frame->image.empty() && fs::is_directory(location);
+      const bool is_of_video = !is_in_folder && (frame->index > 0 || source.info().frame_count.value_or(1) > 1);
+      const std::string name = is_in_folder  ? (fs::path(location) / frame->image).string()
+                               : is_of_video ? fmt::format("{} frame {}", location, frame->index)
+                                             : location;
       if (out.looks.empty()) out.size = {frame->view.width(), frame->view.height()};
       if (frame->view.width() != out.size.width || frame->view.height() != out.size.height)
         throw Error(name, fmt::format("is {} x {}, must be {} x {} like the images before", frame->view.width(),

@@ -15,7 +15,8 @@ namespace tassilo {
 
 /// How a target is named on the command line, for help texts.
 inline const std::string kTargetHelp =
-    "dots:COLUMNSxROWS:PITCH:RADIUS or checker:COLUMNSxROWS:PITCH (inner corners), in metres";
+    "dots:COLUMNSxROWS:PITCH:RADIUS, checker:COLUMNSxROWS:PITCH (inner corners), in metres, or "
+    "aprilgrid:TAGCOLSxTAGROWS:TAGSIZE:TAGSPACING (spacing: share of the size)";
 
 /// An image that was looked at, and what was found.
 struct Look {

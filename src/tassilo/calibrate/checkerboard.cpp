@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "tassilo/base/contract.h"
+#include "tassilo/calibrate/april_grid.h"
 #include "tassilo/calibrate/dot_grid.h"
 #include "tassilo/calibrate/internal/grid_walk.h"
 #include "tassilo/calibrate/internal/image_filters.h"
@@ -232,7 +233,15 @@ TargetSearch find_checkerboard(ByteView image, const Target& target) {
 }
 
 TargetSearch find_target(ByteView image, const Target& target) {
-  return target.kind == TargetKind::dots ? find_dot_grid(image, target) : find_checkerboard(image, target);
+  switch (target.kind) {
+    case TargetKind::checkerboard:
+      return find_checkerboard(image, target);
+    case TargetKind::april_grid:
+      return find_april_grid(image, target);
+    case TargetKind::dots:
+      break;
+  }
+  return find_dot_grid(image, target);
 }
 
 }  // namespace tassilo

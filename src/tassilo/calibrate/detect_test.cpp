@@ -84,6 +84,101 @@ TEST(FindTarget, OneKindIsNotTheOther) {
   }
 }
 
+TEST(FindDotGrid, MeasuresTheFrame) {
+  for (const CameraModel& camera : {kCamera, kPlumb}) {
+    double squares = 0, count = 0;
+    unsigned seed = 30;
+    for (const TargetPose& pose : poses(camera, kDots)) {
+      const TargetSearch search = find_target(render(camera, kDots, pose, seed++).view(), kDots);
+      ASSERT_TRUE(search.view) << search.reason;
+      for (const FramePlace& place : search.view->frame) {
+        EXPECT_NEAR(norm(place.normal), 1, 1e-9);
+        const bool is_row = place.side == FrameSide::top || place.side == FrameSide::bottom;
+        const bool is_first = place.side == FrameSide::top || place.side == FrameSide::left;
+        const double across = is_first ? -1.125 : 7.125;
+        const auto shown = is_row ? project_at(camera, pose, place.along * kDots.pitch, across * kDots.pitch)
+                                  : project_at(camera, pose, across * kDots.pitch, place.along * kDots.pitch);
+        ASSERT_TRUE(shown);
+        const double off = dot(place.pixel - *shown, place.normal);
+        EXPECT_LT(std::abs(off), .5);
+        squares += off * off;
+        ++count;
+      }
+    }
+    EXPECT_GT(count, 300);
+    EXPECT_LT(std::sqrt(squares / count), .04);
+    RecordProperty("rms_px", std::to_string(std::sqrt(squares / count)));
+  }
+}
+
+/// Places and poses at which parts of a grid of tags are beyond the image, corners of the image among what it covers.
+std::vector<TargetPose> poses_of_tags(const CameraModel& camera) {
+  std::vector<TargetPose> out;
+  const std::array<std::array<double, 2>, 5> places{{{150, 120}, {70, 60}, {260, 60}, {70, 190}, {250, 180}}};
+  for (std::size_t i = 0; i < places.size(); ++i)
+    out.push_back(pose_at(camera, kTags, {places[i][0] * camera.width / 320, places[i][1] * camera.width / 320}, .2,
+                          {.3 - .1 * static_cast<double>(i), .2, .3 * static_cast<double>(i)}));
+  return out;
+}
+
+TEST(FindAprilGrid, PlacesCornersAlsoWhereTheTargetLeavesTheImage) {
+  const CameraModel fisheye{.name = {},
+                            .width = 640,
+                            .height = 480,
+                            .fx = 320,
+                            .fy = 316,
+                            .cx = 316,
+                            .cy = 242,
+                            .distortion = Equidistant{-.02, .01, -.004, .0006}};
+  for (const CameraModel& camera : {kCamera, kPlumb, fisheye}) {
+    double squares = 0, count = 0, worst = 0;
+    unsigned seed = 60;
+    for (const TargetPose& pose : poses_of_tags(camera)) {
+      const TargetSearch search = find_target(render(camera, kTags, pose, seed++).view(), kTags);
+      ASSERT_TRUE(search.view) << search.reason;
+      EXPECT_TRUE(search.remarks.empty()) << search.remarks.front();
+      for (const SeenPoint& point : search.view->points) {
+        const auto shown = seen_at(camera, pose, kTags, point.column, point.row);
+        ASSERT_TRUE(shown);
+        const double off = distance(point.pixel, *shown);
+        squares += off * off;
+        worst = std::max(worst, off);
+        ++count;
+      }
+    }
+    EXPECT_GT(count, 120);
+    EXPECT_LT(worst, .25);
+    EXPECT_LT(std::sqrt(squares / count), .06);
+    RecordProperty("corners", std::to_string(count));
+    RecordProperty("rms_px", std::to_string(std::sqrt(squares / count)));
+  }
+}
+
+TEST(FindAprilGrid, TagsThatAreNoPartOfItAreThrownOutWithReason) {
+  const TargetPose pose = poses_of_tags(kCamera)[0];
+  const TestImage image = render(kCamera, kTags, pose, 70);
+  Target smaller = kTags;
+  smaller.rows = 4;  // has ids of the lower two rows only
+  const TargetSearch search = find_target(image.view(), smaller);
+  EXPECT_FALSE(search.remarks.empty());
+  EXPECT_NE(search.remarks.at(0).find("ids of the grid end at"), std::string::npos) << search.remarks[0];
+  // The same image twice, side by side: each tag is there two times.
+  TestImage twice{2 * image.width, image.height, {}};
+  for (int r = 0; r < image.height; ++r)
+    for (int c = 0; c < twice.width; ++c)
+      twice.pixels.push_back(image.pixels[static_cast<std::size_t>(r * image.width + c % image.width)]);
+  const TargetSearch doubled = find_target(twice.view(), kTags);
+  EXPECT_FALSE(doubled.view);
+  EXPECT_NE(doubled.remarks.at(0).find("seen 2 times"), std::string::npos) << doubled.remarks[0];
+}
+
+TEST(FindAprilGrid, TagsAreThoseOfKalibr) {
+  // Its code for tag 0, 0xd5d628584, row by row from the top: a set bit is white.
+  const auto black = tag_cells(0);
+  for (std::size_t i = 0; i < 36; ++i)
+    EXPECT_EQ(black[(2 + i / 6) * kTagCells + 2 + i % 6], !(0xd5d628584 >> (35 - i) & 1)) << i;
+}
+
 TEST(FindTarget, ALargerGridIsAnotherTarget) {
   const Target large_dots{TargetKind::dots, 9, 9, .03, .008}, large_board{TargetKind::checkerboard, 10, 7, .03, 0};
   const TestImage dots = render(kCamera, large_dots, poses(kCamera, large_dots)[0], 1);
@@ -131,7 +226,7 @@ TEST(FindTarget, AnyImageIsSurvived) {
                                         : (noise > 250) * 255;
           image.pixels.push_back(static_cast<std::uint8_t>(value));
         }
-      for (const Target& target : {kDots, kChecker}) EXPECT_FALSE(find_target(image.view(), target).view);
+      for (const Target& target : {kDots, kChecker, kTags}) EXPECT_FALSE(find_target(image.view(), target).view);
     }
 }
 
@@ -163,15 +258,18 @@ TEST(GridWalk, ToleratesStrayAndMissingPoints) {
 }
 
 TEST(Target, TextRoundTrip) {
-  for (const char* text : {"dots:7x7:0.04:0.01", "checker:9x6:0.04", "dots:12x5:0.0255:0.008"})
+  for (const char* text :
+       {"dots:7x7:0.04:0.01", "checker:9x6:0.04", "dots:12x5:0.0255:0.008", "aprilgrid:6x6:0.088:0.3"})
     EXPECT_EQ(to_text(target_from_text(text)), text);
   EXPECT_EQ(target_from_text("checker:9x6:0.04"), kChecker);
 }
 
 TEST(Target, BadTextsAreRefused) {
-  for (const char* text : {"", "dots", "dots:7x7:0.04", "dots:7:0.04:0.01", "dots:7x7:0.04:0.03", "dots:7x7:-1:0.01",
-                           "dots:2x7:0.04:0.01", "dots:7x700:0.04:0.01", "dots:7x7:nan:0.01", "checker:9x6:0.04:0.01",
-                           "checker:8x6:0.04", "grid:9x6:0.04", "checker:9x6:0.04m", "checker:9x6x1:0.04"})
+  for (const char* text :
+       {"", "dots", "dots:7x7:0.04", "dots:7:0.04:0.01", "dots:7x7:0.04:0.03", "dots:7x7:-1:0.01", "dots:2x7:0.04:0.01",
+        "dots:7x700:0.04:0.01", "dots:7x7:nan:0.01", "checker:9x6:0.04:0.01", "checker:8x6:0.04", "grid:9x6:0.04",
+        "checker:9x6:0.04m", "checker:9x6x1:0.04", "aprilgrid:6x6:0.04", "aprilgrid:1x6:0.04:0.3",
+        "aprilgrid:30x30:0.04:0.3", "aprilgrid:6x6:0.04:0"})
     EXPECT_THROW(target_from_text(text), Error) << text;
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "tassilo/base/contract.h"
+#include "tassilo/calibrate/internal/frame_places.h"
 #include "tassilo/calibrate/internal/grid_walk.h"
 #include "tassilo/calibrate/internal/image_filters.h"
 #include "tassilo/calibrate/internal/plane_map.h"
@@ -190,6 +191,7 @@ TargetSearch find_dot_grid(ByteView image, const Target& target) {
       for (int c = 0; c < lattice->columns; ++c)
         if (const int point = lattice->at(c, r); point >= 0)
           view.points.push_back({c, r, centers[static_cast<std::size_t>(point)]});
+    view.frame = frame_places(image, view);
     return {std::move(view), {}};
   }
   return nearest;

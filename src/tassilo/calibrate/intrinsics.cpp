@@ -90,6 +90,8 @@ Intrinsics calibrate_intrinsics(ImageSize size, std::span<const TargetView> view
   }
   for (std::size_t v = 0; v < usable.size(); ++v) out.views[place[v]] = calibration.view_result(v);
   out.rms_px = calibration.rms();
+  out.frame_places = calibration.frame_places();
+  out.frames_rejected = calibration.frames_rejected();
   if (options.folds > 0) out.cross_validated_rms_px = calibration.cross_validated();
   out.worst_sigma_px = worst_sigma(size, options.model, parameters, out.covariance);
   out.coverage = coverage_of(out.camera, out.views);

@@ -24,6 +24,12 @@ struct IntrinsicsOptions {
   /// A view is thrown out when its points lie this many times as far off as those of the middle one of all views; so is
   /// a point, by its view's kind of target. [1], > 1
   double outlier_ratio = 3;
+  /// The sides of dot targets' frames count, as lines that are straight: they reach beyond the dots. Where they are is
+  /// estimated. Frames that contradict the dots are left out, with a warning.
+  bool frames = true;
+  /// Where views leave radial coefficients open, lenses are believed to be like those of the division model, within
+  /// 10 % of the radius at the image corner.
+  bool ordinary_lens = true;
   int folds = 5;       ///< Of the cross-validation: calibrations without a share of the views; 0: none. >= 2 or 0
   void check() const;  ///< Throws Error naming the first field out of range.
 };
@@ -85,6 +91,8 @@ struct Intrinsics {
   /// The largest standard deviation of where a direction shows, over a grid of places up to the image's corners and but
   /// for a rotation of the camera as a whole; what `warnings` judge a lens beyond the covered part by. [px]
   double worst_sigma_px = 0;
+  int frame_places = 0;         ///< Places on the sides of frames that were used.
+  std::string frames_rejected;  ///< Why they were not, where there were some. Lower-case, no full stop.
   std::vector<ViewResult> views;
   Coverage coverage;
   std::vector<std::string> warnings;  ///< Lower-case, no full stop.

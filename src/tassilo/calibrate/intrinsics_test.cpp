@@ -181,6 +181,104 @@ TEST(Intrinsics, WarnsOfWhatIsDoubtful) {
   EXPECT_THAT(calibrate_intrinsics({640, 480}, views_of(camera, kChecker, 20, 13, .05)).warnings, testing::IsEmpty());
 }
 
+/// Views of dots whose frames show, none of which reaches the image's corners.
+std::vector<TargetView> inner_views(const CameraModel& camera, std::mt19937& random, double sigma,
+                                    double frame_distance = 1.125) {
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::vector<TargetView> views;
+  while (views.size() < 8) {
+    const PixelPoint place{camera.width * (.5 + .25 * unit(random)), camera.height * (.4 + .2 * unit(random))};
+    const Eigen::Vector3d turns(.6 * unit(random), .6 * unit(random), 3 * unit(random));
+    const TargetPose pose = pose_at(camera, kDots, place, .55 + .1 * unit(random), turns);
+    if (!(pose.rotation.col(2).dot(pose.translation.normalized()) > .4)) continue;
+    TargetView view = view_of(camera, kDots, pose, random, sigma);
+    if (view.points.size() < 40) continue;
+    view.frame = frame_of(camera, kDots, pose, random, .8 * sigma, frame_distance);
+    views.push_back(std::move(view));
+  }
+  return views;
+}
+
+TEST(Intrinsics, FramesOfDotsReachFartherThanTheDots) {
+  for (const LensModel model : {LensModel::division, LensModel::plumb_bob}) {
+    SCOPED_TRACE(to_string(model));
+    const CameraModel camera = camera_of(model);
+    const auto truth = parameters_of(camera);
+    double with = 0, without = 0, in_sigmas = 0;
+    constexpr int trials = 3;
+    for (unsigned trial = 0; trial < trials; ++trial) {
+      std::mt19937 random(40 + trial);
+      const auto views = inner_views(camera, random, .02);
+      const Intrinsics framed = calibrate_intrinsics({640, 480}, views, {.model = model, .folds = 0});
+      const Intrinsics bare = calibrate_intrinsics({640, 480}, views, {.model = model, .frames = false, .folds = 0});
+      EXPECT_EQ(framed.frames_rejected, "");
+      EXPECT_GT(framed.frame_places, 500);
+      EXPECT_EQ(bare.frame_places, 0);
+      EXPECT_LT(framed.worst_sigma_px, bare.worst_sigma_px);
+      with += mapped_error(camera, framed.camera).worst;
+      without += mapped_error(camera, bare.camera).worst;
+      Eigen::VectorXd off(static_cast<Eigen::Index>(truth.size()));
+      for (std::size_t i = 0; i < truth.size(); ++i)
+        off[static_cast<Eigen::Index>(i)] = framed.values[i].value - truth[i];
+      in_sigmas += off.dot(framed.covariance.ldlt().solve(off));
+    }
+    EXPECT_LT(with, .7 * without);
+    const auto n = static_cast<double>(truth.size());
+    EXPECT_NEAR(in_sigmas / trials, n, 5 * std::sqrt(2 * n / trials));
+  }
+}
+
+TEST(Intrinsics, WhereAFrameIsDoesNotMatter) {
+  const CameraModel camera = camera_of(LensModel::division);
+  std::array<double, 2> worst{};
+  for (const std::size_t far : {0U, 1U}) {
+    std::mt19937 random(50);
+    const Intrinsics result =
+        calibrate_intrinsics({640, 480}, inner_views(camera, random, .02, far == 1 ? 1.3 : 1.125));
+    EXPECT_EQ(result.frames_rejected, "");
+    EXPECT_GT(result.frame_places, 500);
+    worst[far] = mapped_error(camera, result.camera).worst;
+  }
+  EXPECT_NEAR(worst[0], worst[1], .1);
+}
+
+TEST(Intrinsics, FramesThatAreBentAreLeftOut) {
+  const CameraModel camera = camera_of(LensModel::division);
+  std::mt19937 random(60);
+  auto views = inner_views(camera, random, .02);
+  for (TargetView& view : views)
+    for (FramePlace& place : view.frame) {
+      const double bow = .08 * (place.along - 3) * (place.along - 3);  // up to 1 px
+      place.pixel = place.pixel + bow * place.normal;
+    }
+  const Intrinsics framed = calibrate_intrinsics({640, 480}, views);
+  const Intrinsics bare = calibrate_intrinsics({640, 480}, views, {.frames = false});
+  EXPECT_NE(framed.frames_rejected, "");
+  EXPECT_EQ(framed.camera, bare.camera);
+  EXPECT_THAT(framed.warnings, Contains(HasSubstr("frame")));
+}
+
+TEST(Intrinsics, ATargetThatLeavesTheImageCoversItsCorners) {
+  for (const LensModel model : {LensModel::division, LensModel::plumb_bob}) {
+    SCOPED_TRACE(to_string(model));
+    const CameraModel camera = camera_of(model);
+    std::mt19937 random(80);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    std::vector<TargetView> views;
+    while (views.size() < 8) {
+      const PixelPoint place{camera.width * (.5 + .4 * unit(random)), camera.height * (.5 + .4 * unit(random))};
+      const TargetPose pose =
+          pose_at(camera, kTags, place, .3, {.5 * unit(random), .5 * unit(random), 3 * unit(random)});
+      if (!(pose.rotation.col(2).dot(pose.translation.normalized()) > .4)) continue;
+      TargetView view = view_of(camera, kTags, pose, random, .04);
+      if (view.points.size() >= 12) views.push_back(std::move(view));
+    }
+    const Intrinsics result = calibrate_intrinsics({640, 480}, views, {.model = model, .folds = 0});
+    EXPECT_GT(result.coverage.reach, .9);
+    EXPECT_LT(mapped_error(camera, result.camera).worst, .3);
+  }
+}
+
 TEST(Intrinsics, FewerThanThreeViewsAreRefused) {
   const CameraModel camera = camera_of(LensModel::division);
   EXPECT_THROW(calibrate_intrinsics({640, 480}, {}), Error);

@@ -10,6 +10,7 @@
 #include <random>
 #include <vector>
 
+#include "tassilo/calibrate/april_grid.h"
 #include "tassilo/calibrate/checkerboard.h"
 #include "tassilo/calibrate/intrinsics.h"
 #include "tassilo/camera/camera_model.h"
@@ -19,6 +20,7 @@
 namespace tassilo {
 
 inline const Target kDots{TargetKind::dots, 7, 7, .04, .01};
+inline const Target kTags{TargetKind::april_grid, 12, 12, .04, 0, .3};
 inline const Target kChecker{TargetKind::checkerboard, 9, 6, .04, 0};
 
 struct TestImage {
@@ -42,7 +44,8 @@ inline TargetPose pose_at(const CameraModel& camera, const Target& target, Pixel
       (Eigen::AngleAxisd(turns.z(), Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(turns.y(), Eigen::Vector3d::UnitY()) *
        Eigen::AngleAxisd(turns.x(), Eigen::Vector3d::UnitX()))
           .toRotationMatrix();
-  const Eigen::Vector3d middle((target.columns - 1) * target.pitch / 2, (target.rows - 1) * target.pitch / 2, 0);
+  const TargetPoint last = target.at(target.columns - 1, target.rows - 1);
+  const Eigen::Vector3d middle(last.x / 2, last.y / 2, 0);
   pose.translation = distance * Eigen::Vector3d(ray.x, ray.y, ray.z) - pose.rotation * middle;
   return pose;
 }
@@ -50,6 +53,25 @@ inline TargetPose pose_at(const CameraModel& camera, const Target& target, Pixel
 /// Brightness of a target at a place on its plane; nothing beside the paper. [m]
 inline std::optional<double> brightness(const Target& target, double x, double y) {
   constexpr double paper = 190, ink = 50;
+  if (target.kind == TargetKind::april_grid) {
+    const double gap = target.spacing * target.pitch, step = target.pitch + gap;
+    const int columns = target.columns / 2, rows = target.rows / 2;
+    if (x < -1.5 * gap || y < -1.5 * gap || x > columns * step + .5 * gap || y > rows * step + .5 * gap)
+      return std::nullopt;
+    const double c = std::floor(x / step), r = std::floor(y / step), u = x - c * step, v = y - r * step;
+    if (u > target.pitch && v > target.pitch) return u < step && v < step && x >= -gap && y >= -gap ? ink : paper;
+    if (u > target.pitch || v > target.pitch || c < 0 || r < 0 || c >= columns || r >= rows) return paper;
+    static const auto tags = [] {
+      std::vector<std::vector<bool>> out;
+      for (int id = 0; id < 60; ++id) out.push_back(tag_cells(id));
+      return out;
+    }();
+    const auto id = static_cast<std::size_t>(columns * (rows - 1 - static_cast<int>(r)) + static_cast<int>(c));
+    const auto cell = [&](double w) {
+      return static_cast<std::size_t>(std::min(kTagCells - 1, static_cast<int>(w / target.pitch * kTagCells)));
+    };
+    return tags[id][cell(v) * kTagCells + cell(u)] ? ink : paper;
+  }
   const double q = target.pitch, u = x / q, v = y / q;
   const double right = target.columns - 1, bottom = target.rows - 1;
   const double margin = target.kind == TargetKind::dots ? 1.6 : 1.5;
@@ -111,8 +133,8 @@ inline TestImage render(const CameraModel& camera, const Target& target, const T
 /// Where the centroid of a dot's image is, or a corner.
 inline std::optional<PixelPoint> seen_at(const CameraModel& camera, const TargetPose& pose, const Target& target,
                                          int column, int row) {
-  const double x = column * target.pitch, y = row * target.pitch;
-  if (target.kind == TargetKind::checkerboard) return project_at(camera, pose, x, y);
+  const auto [x, y] = target.at(column, row);
+  if (target.kind != TargetKind::dots) return project_at(camera, pose, x, y);
   constexpr int corners = 180;
   std::vector<PixelPoint> rim;
   for (int i = 0; i < corners; ++i) {
@@ -129,6 +151,52 @@ inline std::optional<PixelPoint> seen_at(const CameraModel& camera, const Target
     moment = moment + cross(a, b) * (a + b);
   }
   return rim[0] + 1 / (3 * area) * moment;
+}
+
+/// Places on the frame of a dot target whose sides' middles are `distance` pitches from the outer dots, as a perfect
+/// detector with Gaussian errors across the sides would give them. [px]
+inline std::vector<FramePlace> frame_of(const CameraModel& camera, const Target& target, const TargetPose& pose,
+                                        std::mt19937& random, double sigma, double distance = 1.125) {
+  std::normal_distribution<double> gauss(0, sigma);
+  std::vector<FramePlace> out;
+  for (const FrameSide side : {FrameSide::top, FrameSide::bottom, FrameSide::left, FrameSide::right}) {
+    const bool is_row = side == FrameSide::top || side == FrameSide::bottom;
+    const bool is_first = side == FrameSide::top || side == FrameSide::left;
+    const double across = is_first ? -distance : (is_row ? target.rows : target.columns) - 1 + distance;
+    const auto at = [&](double along) {
+      return is_row ? project_at(camera, pose, along * target.pitch, across * target.pitch)
+                    : project_at(camera, pose, across * target.pitch, along * target.pitch);
+    };
+    for (double along = is_first ? 0 : -.6; along < (is_row ? target.columns : target.rows) - .4; along += .25) {
+      const auto here = at(along), next = at(along + .01);
+      if (!here || !next || here->x < 0 || here->y < 0 || here->x > camera.width - 1 || here->y > camera.height - 1)
+        continue;
+      const PixelPoint tangent = 1 / norm(*next - *here) * (*next - *here), normal{-tangent.y, tangent.x};
+      out.push_back({side, along, *here + gauss(random) * normal, normal});
+    }
+  }
+  return out;
+}
+
+/// How far directions show from where they do by the true camera, at most and as a root mean square, over a grid of
+/// pixels up to the corners; infinite where one cannot be shown. [px]
+struct MappedError {
+  double worst = 0, rms = 0;
+};
+inline MappedError mapped_error(const CameraModel& truth, const CameraModel& found) {
+  constexpr int columns = 17, rows = 13;
+  MappedError out;
+  for (int i = 0; i < columns * rows; ++i) {
+    const PixelPoint pixel{(truth.width - 1.) * (i % columns) / (columns - 1),
+                           (truth.height - 1.) * (i / columns) / (rows - 1)};
+    const auto ray = unproject(truth, pixel);
+    const auto shown = ray ? project(found, *ray) : std::nullopt;
+    const double off = shown ? distance(pixel, *shown) : std::numeric_limits<double>::infinity();
+    out.worst = std::max(out.worst, off);
+    out.rms += off * off / (columns * rows);
+  }
+  out.rms = std::sqrt(out.rms);
+  return out;
 }
 
 /// A view as a perfect detector with Gaussian errors would give it: the points that are in the image. [px]

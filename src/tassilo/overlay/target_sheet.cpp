@@ -31,7 +31,23 @@ cairo_status_t append(void* bytes, const unsigned char* data, unsigned length) {
 }
 
 /// From the first point to what is outermost of the black marks. [pitch]
-double border(const TargetSheet& sheet) { return sheet.marks == TargetSheet::Marks::dots ? 1.25 : 1.; }
+double border(const TargetSheet& sheet) {
+  switch (sheet.marks) {
+    case TargetSheet::Marks::checkerboard:
+      return 1;
+    case TargetSheet::Marks::tags:
+      return sheet.spacing;
+    case TargetSheet::Marks::dots:
+      break;
+  }
+  return 1.25;
+}
+
+/// From the first point to the last along a side with `count` marks. [m]
+double extent(const TargetSheet& sheet, int count) {
+  if (sheet.marks != TargetSheet::Marks::tags) return (count - 1) * sheet.pitch;
+  return ((count - 1) * (1 + sheet.spacing) + 1) * sheet.pitch;
+}
 
 // Units of all drawing: metres; origin: the first point.
 
@@ -59,6 +75,26 @@ void draw_squares(cairo_t* cairo, const TargetSheet& sheet) {
   for (int r = 0; r <= sheet.rows; ++r)
     for (int c = 0; c <= sheet.columns; ++c)
       if ((c + r) % 2 == 0) cairo_rectangle(cairo, (c - 1) * q, (r - 1) * q, q, q);
+  cairo_fill(cairo);
+}
+
+void draw_tags(cairo_t* cairo, const TargetSheet& sheet) {
+  const double size = sheet.pitch, gap = sheet.spacing * size, step = size + gap;
+  // Cells that touch must show no seam between them.
+  cairo_set_antialias(cairo, CAIRO_ANTIALIAS_NONE);
+  for (int r = 0; r <= sheet.rows; ++r)
+    for (int c = 0; c <= sheet.columns; ++c) cairo_rectangle(cairo, c * step - gap, r * step - gap, gap, gap);
+  for (int r = 0; r < sheet.rows; ++r)
+    for (int c = 0; c < sheet.columns; ++c) {
+      const std::vector<bool>& black = sheet.cells[static_cast<std::size_t>(r * sheet.columns + c)];
+      const auto side = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(black.size()))));
+      const double cell = size / static_cast<double>(side);
+      for (std::size_t i = 0; i < side; ++i)
+        for (std::size_t k = 0; k < side; ++k)
+          if (black[i * side + k])
+            cairo_rectangle(cairo, c * step + static_cast<double>(k) * cell, r * step + static_cast<double>(i) * cell,
+                            cell, cell);
+    }
   cairo_fill(cairo);
 }
 
@@ -93,9 +129,11 @@ struct Page {
 
 Page page_of(const TargetSheet& sheet) {
   expects(sheet.columns >= 1 && sheet.rows >= 1 && sheet.pitch > 0 && sheet.radius >= 0, "target_sheet: valid sizes");
+  if (sheet.marks == TargetSheet::Marks::tags)
+    expects(sheet.cells.size() == static_cast<std::size_t>(sheet.columns * sheet.rows),
+            "target_sheet: cells of each tag");
   const double around = (border(sheet) + kMargin) * sheet.pitch;
-  return {(sheet.columns - 1) * sheet.pitch + 2 * around, (sheet.rows - 1) * sheet.pitch + 2 * around + kRulerHeight,
-          around};
+  return {extent(sheet, sheet.columns) + 2 * around, extent(sheet, sheet.rows) + 2 * around + kRulerHeight, around};
 }
 
 void draw_page(cairo_surface_t* surface, const TargetSheet& sheet, double scale) {
@@ -107,10 +145,9 @@ void draw_page(cairo_surface_t* surface, const TargetSheet& sheet, double scale)
   cairo_set_source_rgb(cairo.get(), 0, 0, 0);
   cairo_save(cairo.get());
   cairo_translate(cairo.get(), page.around, page.around);
-  if (sheet.marks == TargetSheet::Marks::dots)
-    draw_dots(cairo.get(), sheet);
-  else
-    draw_squares(cairo.get(), sheet);
+  if (sheet.marks == TargetSheet::Marks::dots) draw_dots(cairo.get(), sheet);
+  if (sheet.marks == TargetSheet::Marks::checkerboard) draw_squares(cairo.get(), sheet);
+  if (sheet.marks == TargetSheet::Marks::tags) draw_tags(cairo.get(), sheet);
   cairo_restore(cairo.get());
   cairo_translate(cairo.get(), .4 * page.around, page.height - kRulerHeight + .005);
   draw_ruler(cairo.get(), page.width - .8 * page.around, sheet.caption);

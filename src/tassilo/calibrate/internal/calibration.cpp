@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "tassilo/base/error.h"
+#include "tassilo/calibrate/internal/frame_places.h"
 #include "tassilo/calibrate/internal/lens.h"
 #include "tassilo/calibrate/internal/start.h"
 
@@ -21,6 +22,12 @@ constexpr std::size_t kMarkings = 4;  ///< Of outliers, each after a fit without
 constexpr double kHarmless = .02;     ///< A point is no outlier for less. [px]
 constexpr double kFarOff = 1000;      ///< Stands for points without an image. [px]
 constexpr double kHarmlessView = .1;  ///< A view is not thrown out for less. [px]
+
+constexpr double kFirstFrameSigma = .1;  ///< Before it is measured. [px]
+constexpr int kFrameRounds = 4;          ///< Of fits, each with the weights and outliers of the last.
+constexpr double kLeastPlaces = 8;       ///< On a side, for it to count.
+constexpr std::size_t kAlikePlaces = 4;  ///< Neighbors on each side that likeness is looked for among: a pitch.
+constexpr double kContradiction = 5;     ///< Standard deviations of how far frames may move the camera.
 
 const std::string kSubject = "calibration";
 
@@ -59,12 +66,14 @@ Calibration::Calibration(ImageSize size, const std::vector<TargetView>& views, c
       fixed_(fixed_parameters(options)),
       bundle_(options.model, views),
       rejected_(views.size()),
-      sigmas_(views.size(), 1) {}
+      sigmas_(views.size(), 1),
+      frame_sigmas_(views.size()) {}
 
 void Calibration::run() {
   const auto division = start_from_homographies(size_, views_);
   const auto start = division ? convert_start(division->state, size_, options_.model, fixed_) : std::nullopt;
   if (!start) throw Error(kSubject, "no camera explains the views; some may show another target than told");
+  if (options_.ordinary_lens) bundle_.expect_ordinary_lens(size_, division->state.camera);
   for (std::size_t v = 0; v < views_.size(); ++v)
     if (!division->placed[v] || !bundle_.shows(*start, v)) {
       bundle_.use_view(v, false);
@@ -81,6 +90,131 @@ void Calibration::run() {
     sigmas_ = estimated_sigmas();
   }
   covariance_ = covariance_now();
+  if (options_.frames) add_frames();
+}
+
+void Calibration::add_frames() {
+  const BundleState by_points = state_;
+  const Sigmas sigmas_by_points = sigmas_;
+  bool any = false;
+  state_.frames.assign(views_.size(), {kFrameDistance, kFrameDistance, kFrameDistance, kFrameDistance});
+  for (std::size_t v = 0; v < views_.size(); ++v)
+    if (bundle_.uses_view(v) && !views_[v].frame.empty()) {
+      frame_sigmas_[v].fill(kFirstFrameSigma);
+      bundle_.use_frame(v, frame_sigmas_[v]);
+      any = true;
+    }
+  if (!any) return;
+  for (int round = 0; round < kFrameRounds && any; ++round) {
+    fit(state_, 0);
+    sigmas_ = estimated_sigmas();
+    any = weigh_frames();
+  }
+  if (!any) {
+    frames_rejected_ = "the sides of frames are not straight or too little of them is seen";
+  } else {
+    // The better of two estimates that agree differs from the other by what its covariance is smaller.
+    const Eigen::MatrixXd both = covariance_now();
+    std::vector<Eigen::Index> free;
+    for (std::size_t i = 0; i < state_.camera.size(); ++i)
+      if (std::ranges::find(fixed_, static_cast<int>(i)) == fixed_.end()) free.push_back(static_cast<Eigen::Index>(i));
+    const auto n = static_cast<Eigen::Index>(free.size());
+    Eigen::VectorXd moved(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const auto k = static_cast<std::size_t>(free[static_cast<std::size_t>(i)]);
+      moved[i] = state_.camera[k] - by_points.camera[k];
+    }
+    const Eigen::VectorXd scale = covariance_(free, free).diagonal().cwiseSqrt();
+    const Eigen::MatrixXd scaled =
+        (Eigen::MatrixXd(covariance_(free, free)).array() / (scale * scale.transpose()).array()).matrix();
+    const Eigen::VectorXd in_sigmas = moved.cwiseQuotient(scale);
+    const double off = in_sigmas.dot(scaled.ldlt().solve(in_sigmas)), expected = static_cast<double>(n);
+    if (off <= expected + kContradiction * std::sqrt(2 * expected)) {
+      covariance_ = both;
+      return;
+    }
+    frames_rejected_ = "frames contradict the dots within them";
+  }
+  for (std::size_t v = 0; v < views_.size(); ++v) bundle_.use_frame(v, frame_sigmas_[v] = {});
+  state_ = by_points;
+  sigmas_ = sigmas_by_points;
+}
+
+bool Calibration::weigh_frames() {
+  struct Sum {
+    double squares = 0, count = 0;
+    double mean() const { return squares / std::max(1., count - 1); }  // less where the side is
+  };
+  std::vector<std::array<Sum, 4>> of(views_.size());
+  std::vector<double> usual;
+  for (std::size_t v = 0; v < views_.size(); ++v) {
+    const auto residuals = bundle_.frame_residuals(state_, v);
+    for (std::size_t side = 0; side < 4; ++side) {
+      if (!(frame_sigmas_[v][side] > 0)) continue;
+      std::vector<double> sizes;
+      for (std::size_t i = 0; i < residuals.size(); ++i)
+        if (static_cast<std::size_t>(views_[v].frame[i].side) == side && residuals[i])
+          sizes.push_back(std::abs(*residuals[i]));
+      const double limit = std::max(kHarmless, options_.outlier_ratio * 1.4826 * median_of(sizes));
+      Sum& sum = of[v][side];
+      for (std::size_t i = 0; i < residuals.size(); ++i) {
+        if (static_cast<std::size_t>(views_[v].frame[i].side) != side) continue;
+        const bool is_inlier = residuals[i] && std::abs(*residuals[i]) <= limit;
+        bundle_.use_frame_place(v, i, is_inlier);
+        sum.squares += is_inlier ? *residuals[i] * *residuals[i] : 0;
+        sum.count += is_inlier;
+      }
+      if (sum.count >= kLeastPlaces) usual.push_back(sum.mean());
+    }
+  }
+  const double middle = median_of(usual);
+  bool any = false;
+  for (std::size_t v = 0; v < views_.size(); ++v) {
+    for (std::size_t side = 0; side < 4; ++side) {
+      const Sum& sum = of[v][side];
+      const double square = (sum.squares + kBelief * middle) / (std::max(0., sum.count - 1) + kBelief);
+      const double most = std::max(kHarmlessView, options_.outlier_ratio * sigmas_[v]);
+      const bool counts = sum.count >= kLeastPlaces && std::sqrt(sum.mean()) < most;
+      frame_sigmas_[v][side] = counts ? std::max(kLeastSigma, std::sqrt(square)) : 0;
+      any = any || counts;
+    }
+    bundle_.use_frame(v, frame_sigmas_[v]);
+  }
+  return any;
+}
+
+int Calibration::frame_places() const {
+  int count = 0;
+  for (std::size_t v = 0; v < views_.size(); ++v)
+    for (std::size_t i = 0; i < views_[v].frame.size(); ++i) count += bundle_.uses_frame_place(v, i);
+  return count;
+}
+
+double Calibration::frame_likeness() const {
+  double products = 0, pairs = 0, squares = 0, count = 0, sides = 0;
+  for (std::size_t v = 0; v < views_.size(); ++v) {
+    const auto& places = views_[v].frame;
+    const auto residuals = bundle_.frame_residuals(state_, v);
+    std::vector<std::optional<double>> in_sigmas;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const bool counts = bundle_.uses_frame_place(v, i) && residuals[i];
+      const double sigma = frame_sigmas_[v][static_cast<std::size_t>(places[i].side)];
+      in_sigmas.push_back(counts ? std::optional(*residuals[i] / sigma) : std::nullopt);
+    }
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      if (!in_sigmas[i]) continue;
+      squares += *in_sigmas[i] * *in_sigmas[i];
+      ++count;
+      for (std::size_t k = i + 1; k < std::min(places.size(), i + kAlikePlaces + 1); ++k)
+        if (in_sigmas[k] && places[k].side == places[i].side) {
+          products += 2 * *in_sigmas[i] * *in_sigmas[k];
+          pairs += 2;
+        }
+    }
+    for (const double sigma : frame_sigmas_[v]) sides += sigma > 0;
+  }
+  // Where a side is, is fitted to its places, which makes their residuals differ.
+  return squares > 0 ? std::max(1., 1 + products / squares + sides / count * pairs / count) : 1;
 }
 
 double Calibration::rms(const BundleState& state, const std::vector<bool>& marked) const {
@@ -121,7 +255,7 @@ ViewResult Calibration::view_result(std::size_t v) const {
 std::optional<double> Calibration::cross_validated() {
   std::vector<std::size_t> used;
   // Kinds of targets one after the other, so that each fold has its share of each.
-  for (const TargetKind kind : {TargetKind::dots, TargetKind::checkerboard})
+  for (const TargetKind kind : {TargetKind::dots, TargetKind::checkerboard, TargetKind::april_grid})
     for (std::size_t v = 0; v < views_.size(); ++v)
       if (bundle_.uses_view(v) && views_[v].target.kind == kind) used.push_back(v);
   const std::size_t folds = std::min(static_cast<std::size_t>(options_.folds), used.size());
@@ -157,7 +291,7 @@ void Calibration::fit(const BundleState& start, double loss) {
 }
 
 Sigmas Calibration::robust_sigmas() const {
-  std::array<std::vector<double>, 2> sizes;
+  std::array<std::vector<double>, kTargetKinds> sizes;
   for (std::size_t v = 0; v < views_.size(); ++v) {
     if (!bundle_.uses_view(v)) continue;
     for (const auto& r : bundle_.residuals(state_, v))
@@ -182,7 +316,7 @@ Sigmas Calibration::estimated_sigmas() const {
     double squares = 0, count = 0;
   };
   std::vector<Sum> of(views_.size());
-  std::array<Sum, 2> of_kind;
+  std::array<Sum, kTargetKinds> of_kind;
   double count = 0;
   for (std::size_t v = 0; v < views_.size(); ++v) {
     if (!bundle_.uses_view(v)) continue;
@@ -267,7 +401,7 @@ bool Calibration::throw_out_worst() {
     for (const double square : squares) sum += square;
     return std::sqrt(sum / static_cast<double>(squares.size()));
   };
-  std::array<std::vector<double>, 2> all;
+  std::array<std::vector<double>, kTargetKinds> all;
   std::vector<double> of(views_.size(), 0);
   for (std::size_t v = 0; v < views_.size(); ++v)
     if (bundle_.uses_view(v)) all[static_cast<std::size_t>(views_[v].target.kind)].push_back(of[v] = off(v));
@@ -292,8 +426,8 @@ bool Calibration::throw_out_worst() {
   return true;
 }
 
-std::array<double, 2> Calibration::likeness() const {
-  std::array<double, 2> products{}, squares{}, pairs{}, points{};
+std::array<double, kTargetKinds> Calibration::likeness() const {
+  std::array<double, kTargetKinds> products{}, squares{}, pairs{}, points{};
   double count = 0;
   for (std::size_t v = 0; v < views_.size(); ++v) {
     if (!bundle_.uses_view(v)) continue;
@@ -315,7 +449,8 @@ std::array<double, 2> Calibration::likeness() const {
   }
   // Residuals of independent errors are not independent: the fit makes neighbors differ by its share of the unknowns.
   const double share = static_cast<double>(parameters()) / (2 * std::max(1., count));
-  std::array<double, 2> out{1, 1};
+  std::array<double, kTargetKinds> out;
+  out.fill(1);
   for (std::size_t kind = 0; kind < out.size(); ++kind)
     if (squares[kind] > 0)
       out[kind] = std::max(1., 1 + products[kind] / squares[kind] + share * pairs[kind] / points[kind]);
@@ -327,7 +462,11 @@ Eigen::MatrixXd Calibration::covariance_now() const {
   const auto alike_by_kind = likeness();
   for (std::size_t v = 0; v < views_.size(); ++v)
     alike_sigmas[v] *= std::sqrt(alike_by_kind[static_cast<std::size_t>(views_[v].target.kind)]);
-  const Eigen::MatrixXd information = bundle_.information(state_, alike_sigmas);
+  std::vector<FrameSigmas> alike_frames = frame_sigmas_;
+  const double alike_places = std::sqrt(frame_likeness());
+  for (FrameSigmas& sides : alike_frames)
+    for (double& sigma : sides) sigma *= alike_places;
+  const Eigen::MatrixXd information = bundle_.information(state_, alike_sigmas, alike_frames);
   std::vector<Eigen::Index> free;
   for (Eigen::Index i = 0; i < information.rows(); ++i)
     if (std::ranges::find(fixed_, static_cast<int>(i)) == fixed_.end()) free.push_back(i);

@@ -26,6 +26,8 @@ class Calibration {
   double rms() const;  ///< Root mean square distance over the used points. [px]
   ViewResult view_result(std::size_t v) const;
   /// See Intrinsics.
+  int frame_places() const;
+  const std::string& frames_rejected() const { return frames_rejected_; }
   std::optional<double> cross_validated();
 
  private:
@@ -48,8 +50,15 @@ class Calibration {
   /// How much larger, by kind of target, the variance of what many points have in common is than that of independent
   /// ones: 1 + the correlations of each point's error with those of its 8 neighbors, never below 1. Paper that is bent
   /// or edges along the pixel grid make neighbors err alike, and standard deviations would promise too much.
-  std::array<double, 2> likeness() const;
+  std::array<double, kTargetKinds> likeness() const;
   Eigen::MatrixXd covariance_now() const;
+  /// Adds what the frames of dot targets say to a calibration by points that is done; goes back to it where both
+  /// contradict each other.
+  void add_frames();
+  /// Standard deviations of places on frames by their residuals, which also tell outliers. False when none are left.
+  bool weigh_frames();
+  /// How much larger the variance of what neighbors on a side have in common is, like `likeness`.
+  double frame_likeness() const;
 
   ImageSize size_;
   const std::vector<TargetView>& views_;
@@ -58,6 +67,8 @@ class Calibration {
   Bundle bundle_;
   std::vector<std::string> rejected_;  ///< One a view; empty for those that count.
   Sigmas sigmas_;
+  std::vector<FrameSigmas> frame_sigmas_;  ///< One a view.
+  std::string frames_rejected_;
   BundleState state_;
   Eigen::MatrixXd covariance_;
 };

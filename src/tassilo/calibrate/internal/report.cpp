@@ -111,6 +111,7 @@ std::vector<std::string> warnings_of(const Intrinsics& result) {
                   " views: too few to tell a wrong one or to check the result, should be at least " +
                   std::to_string(kEnoughViews) + ", tilted differently and all over the image");
   const Coverage& coverage = result.coverage;
+  if (!result.frames_rejected.empty()) out.push_back("frames of dots are not used: " + result.frames_rejected);
   if (coverage.share < kEnoughShare)
     out.push_back("points cover " + text("%.1f", 100 * coverage.share) + " % of the image, should be at least " +
                   text("%.0f", 100 * kEnoughShare) + " %");

@@ -17,7 +17,10 @@ using Points = std::vector<Eigen::Vector2d>;
 
 Points on_target(const TargetView& view) {
   Points out;
-  for (const SeenPoint& p : view.points) out.emplace_back(p.column * view.target.pitch, p.row * view.target.pitch);
+  for (const SeenPoint& p : view.points) {
+    const TargetPoint at = view.target.at(p.column, p.row);
+    out.emplace_back(at.x, at.y);
+  }
   return out;
 }
 
@@ -180,6 +183,7 @@ std::optional<BundleState> convert_start(const BundleState& division, ImageSize 
                                          std::span<const int> fixed) {
   const CameraModel camera = camera_from(size, LensModel::division, division.camera);
   BundleState out = division;
+  out.division = division.camera[kPinholeCount];
   if (model == LensModel::division) return out;
   out.camera.resize(static_cast<std::size_t>(parameter_count(model)), 0);
   std::fill(out.camera.begin() + kPinholeCount, out.camera.end(), 0);
@@ -229,7 +233,8 @@ std::optional<PoseVector> start_pose(const CameraModel& camera, const TargetView
   for (const SeenPoint& p : view.points) {
     const auto ray = unproject(camera, p.pixel);
     if (!ray) continue;
-    target.emplace_back(p.column * view.target.pitch, p.row * view.target.pitch);
+    const TargetPoint at = view.target.at(p.column, p.row);
+    target.emplace_back(at.x, at.y);
     rays.emplace_back(ray->x, ray->y, ray->z);
     sum += rays.back();
   }
