@@ -11,9 +11,6 @@
 #include "tassilo/app/run.h"
 
 namespace tassilo {
-namespace {
-
-/// Throws CLI::ValidationError: what it refuses is wrong usage.
 std::optional<StartPose> start_pose_from(const std::string& text) {
   if (text.empty()) return std::nullopt;
   StartPose pose;
@@ -34,8 +31,6 @@ std::optional<StartPose> start_pose_from(const std::string& text) {
         "is " + text + ", must be X,Y,THETA or X,Y,THETA,SIGMA_XY,SIGMA_THETA in m and rad, sigmas > 0");
   return pose;
 }
-
-}  // namespace
 
 void add_run_options(CLI::App& command, RunArguments& arguments) {
   command.add_option("-r,--robot", arguments.robot, "robot.yaml: camera, colors, field and options of one robot");
