@@ -85,6 +85,8 @@ std::string RunSummary::text(double seconds, const std::string& source) const {
   if (frames_ > 0 && seconds > 0) out += fmt::format(", {:.1f} frames/s", static_cast<double>(frames_) / seconds);
   out += fmt::format(", {} dropped\n", dropped_);
   out += source + odometry_text();
+  if (!drift_.empty())
+    out += fmt::format("mount: has drifted from the camera file: {}; `tassilo calibrate mount` measures it\n", drift_);
   if (frames_ == 0) return out;
   out += fmt::format("\n{:16}{:>10}{:>10}\n", "seen", "frames", "objects");
   for (const auto& [kind, count] : seen_) out += fmt::format("{:16}{:>10}{:>10}\n", kind, count.frames, count.objects);
