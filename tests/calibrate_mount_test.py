@@ -167,6 +167,20 @@ class FromLines(ProgramTest):
                         self.assertLess(off, most, (name, result.out))
                         self.assertLess(off, 3 * unit * float(sigmas[name]), (name, result.out))
 
+    def test_a_run_tells_when_the_mount_has_drifted(self):
+        degree = math.radians(1)
+        for recording in ("d01_approach", "d05_distract"):
+            video, odometry = DATA / recording / "video.mkv", DATA / recording / "odometry.jsonl"
+            run = ("run", "--robot", f"{recording}/robot.yaml", "--source", video, "--odometry", odometry, "--output", f"{recording}.jsonl")
+            self.robot(recording)
+            self.assertNotIn("drifted", self.succeeds(*run).out)
+            for name, change in (("pitch", degree), ("pitch", -degree), ("roll", degree)):
+                with self.subTest(recording=recording, name=name, change=change):
+                    self.robot(recording, {name: change})
+                    told = re.search(rf"^mount: has drifted from the camera file: .*{name} ([-+.\d]+) deg \(sigma ([.\d]+)\)", self.succeeds(*run).out, re.MULTILINE)
+                    self.assertTrue(told)
+                    self.assertLess(abs(float(told[1]) + math.degrees(change)), .25)
+
     def test_what_is_wrong_is_told(self):
         self.robot("d01_approach")
         self.write("lensless.yaml", "colors: div.yaml\n")

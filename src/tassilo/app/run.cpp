@@ -274,7 +274,8 @@ class Run {
     pose.x = scene.pose->x;
     pose.y = scene.pose->y;
     pose.theta = scene.pose->theta;
-    drift_ = watched(drift_, *drift_target_, {optics->camera, optics->mount_sigma, workspace_.marks, pose, scene.t});
+    drift_ = watched(drift_, *drift_target_,
+                     {optics->camera, optics->mount_sigma, workspace_.marks, workspace_.line_of, pose, scene.t});
     // The last one that was told: a robot that sees no lines in the end has not been mended.
     if (const auto found = drifted(drift_)) summary_.set_drift(to_text(*found));
   }

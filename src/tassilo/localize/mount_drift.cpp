@@ -1,6 +1,7 @@
 #include "tassilo/localize/mount_drift.h"
 
 #include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -26,12 +27,18 @@ constexpr int kRounds = 3;
 
 Vector3 vector(RobotPoint p) { return {p.x, p.y, p.z}; }
 
-/// A seen line and the field's: marks in a row.
+/// A seen line and the field's, with sums over the rays of its marks: all that a straight line is judged by.
 struct Pair {
   std::span<const LineMark> marks;
   const FieldLine* line = nullptr;
   const FieldArc* arc = nullptr;
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  Vector3 rays = Vector3::Zero();
 };
+
+Vector3 ray_of(const LineMark& mark, const Vector3& eye) {
+  return (Vector3(mark.at.x, mark.at.y, 0) - eye).normalized();
+}
 
 /// Marks with the indulgence that a loose mount needs.
 RecycledVector<LineMark> indulgent(const MountEvidence& seen) {
@@ -49,20 +56,37 @@ RecycledVector<LineMark> indulgent(const MountEvidence& seen) {
   return marks;
 }
 
-RecycledVector<Pair> pairs_of(const FieldTarget& target, std::span<const LineMark> marks, const PoseFit& fit) {
-  RecycledVector<Pair> pairs;
+/// Calls each(marks of one line).
+template <class Each>
+void for_lines(std::span<const LineMark> marks, Each each) {
   for (std::size_t begin = 0, end = 0; begin < marks.size(); begin = end) {
     while (end < marks.size() && marks[end].line == marks[begin].line) ++end;
-    Pair pair{marks.subspan(begin, end - begin), nullptr, nullptr};
-    const int line = marks[begin].line;
-    if (line == LineMark::kCircle) {
-      if (!target.curves.arcs.empty()) pair.arc = &target.curves.arcs.front();
-    } else if (line >= 0 && static_cast<std::size_t>(line) < fit.line_of.size()) {
-      const int of = fit.line_of[static_cast<std::size_t>(line)];
-      if (of >= 0) pair.line = &target.curves.lines[static_cast<std::size_t>(of)];
-    }
-    if (pair.line != nullptr || pair.arc != nullptr) pairs.push_back(pair);
+    each(marks.subspan(begin, end - begin));
   }
+}
+bool is_explained(int line, std::span<const int> line_of) {
+  return line >= 0 && static_cast<std::size_t>(line) < line_of.size() && line_of[static_cast<std::size_t>(line)] >= 0;
+}
+
+RecycledVector<Pair> pairs_of(const FieldTarget& target, const MountEvidence& seen, std::span<const int> line_of) {
+  const Vector3 eye = vector(seen.camera.center());
+  RecycledVector<Pair> pairs;
+  for_lines(seen.marks, [&](std::span<const LineMark> marks) {
+    Pair pair{.marks = marks};
+    const int line = marks.front().line;
+    if (line == LineMark::kCircle && !target.curves.arcs.empty())
+      pair.arc = &target.curves.arcs.front();
+    else if (is_explained(line, line_of))
+      pair.line = &target.curves.lines[static_cast<std::size_t>(line_of[static_cast<std::size_t>(line)])];
+    else
+      return;
+    for (const LineMark& mark : marks) {
+      const Vector3 ray = ray_of(mark, eye);
+      pair.squares.noalias() += ray * ray.transpose();
+      pair.rays += ray;
+    }
+    pairs.push_back(pair);
+  });
   return pairs;
 }
 
@@ -80,48 +104,68 @@ Normal normal_at(const MountEvidence& seen, std::span<const Pair> pairs, const F
   const double px_per_rad = std::sqrt(model.fx * model.fy);
   const double own = std::pow(options.mark_sigma_px / px_per_rad, 2),
                common = std::pow(options.line_sigma_px / px_per_rad, 2);
-  const RobotPoint eye_before = seen.camera.center();
-  const Vector3 eye(eye_before.x, eye_before.y, eye_before.z + change[0]);
+  const Vector3 eye_before = vector(seen.camera.center()), eye = eye_before + Vector3(0, 0, change[0]);
   const Vector3 roll_axis = vector(seen.camera.robot_from_optical({0, 0, 1}));
   const double yaw = seen.camera.mount().yaw;
   const Vector3 pitch_axis(-std::sin(yaw), std::cos(yaw), 0), up = Vector3::UnitZ();
+  // Rays, turned as the mount was.
+  const Vector3 turn = change[1] * roll_axis + change[2] * pitch_axis;
+  Eigen::Matrix3d turned = Eigen::Matrix3d::Identity();
+  if (turn.norm() > 0) turned = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
   const auto robot_from_field = inverse(field_from_robot);
+
+  /// A line's plane and how a ray's angle off it changes by the six unknowns: both linear in the ray.
+  struct Plane {
+    Vector3 normal;
+    Eigen::Matrix<double, 6, 3> by;
+  };
+  const auto plane_at = [&](FieldPoint at, FieldPoint along) {
+    const FloorPoint foot = robot_from_field * at, next = robot_from_field * (at + along);
+    const Vector3 tangent = Vector3(next.x - foot.x, next.y - foot.y, 0).normalized();
+    const Vector3 square = (Vector3(foot.x, foot.y, 0) - eye).cross(tangent);
+    const double length = square.norm();
+    Plane plane;
+    plane.normal = square / length;
+    // The normal's own length changes nothing while the ray is near the plane.
+    const auto eye_moved = [&](const Vector3& by) -> Vector3 { return -by.cross(tangent) / length; };
+    const auto ray_turned = [&](const Vector3& axis) -> Vector3 { return plane.normal.cross(axis); };
+    plane.by.row(0) = eye_moved(up);
+    plane.by.row(1) = ray_turned(roll_axis);
+    plane.by.row(2) = ray_turned(pitch_axis);
+    plane.by.row(3) = eye_moved(Vector3::UnitX());
+    plane.by.row(4) = eye_moved(Vector3::UnitY());
+    plane.by.row(5) = ray_turned(up) + eye_moved(up.cross(eye));
+    return plane;
+  };
+
   Normal all;
   for (const Pair& pair : pairs) {
     Matrix6 squares = Matrix6::Zero();
     Vector6 rows = Vector6::Zero(), products = Vector6::Zero();
     double sum = 0, square = 0;
-    for (const LineMark& mark : pair.marks) {
-      // The mark's ray, turned as the mount was.
-      const Vector3 seen_ray = (Vector3(mark.at.x, mark.at.y, 0) - vector(eye_before)).normalized();
-      const Vector3 turn = change[1] * roll_axis + change[2] * pitch_axis;
-      const Vector3 ray = (seen_ray + turn.cross(seen_ray) + .5 * turn.cross(turn.cross(seen_ray))).normalized();
-      FieldPoint at, along;
-      if (pair.line != nullptr) {
-        at = pair.line->p;
-        along = pair.line->q - pair.line->p;
-      } else {
+    if (pair.line != nullptr) {
+      const Plane plane = plane_at(pair.line->p, pair.line->q - pair.line->p);
+      const Eigen::Matrix3d rays = turned * pair.squares * turned.transpose();
+      const Vector3 ray = turned * pair.rays;
+      squares = plane.by * rays * plane.by.transpose();
+      rows = plane.by * ray;
+      products = plane.by * (rays * plane.normal);
+      sum = plane.normal.dot(ray);
+      square = plane.normal.dot(rays * plane.normal);
+    } else {
+      for (const LineMark& mark : pair.marks) {
         const FieldPoint out = field_from_robot * mark.at - pair.arc->center;
         const FieldPoint unit = (1 / std::max(norm(out), 1e-9)) * out;
-        at = pair.arc->center + pair.arc->radius * unit;
-        along = {-unit.y, unit.x};
+        const Plane plane = plane_at(pair.arc->center + pair.arc->radius * unit, {-unit.y, unit.x});
+        const Vector3 ray = turned * ray_of(mark, eye_before);
+        const Vector6 row = plane.by * ray;
+        const double off = plane.normal.dot(ray);
+        squares.noalias() += row * row.transpose();
+        rows += row;
+        products += off * row;
+        sum += off;
+        square += off * off;
       }
-      const FloorPoint foot = robot_from_field * at, next = robot_from_field * (at + along);
-      const Vector3 tangent = Vector3(next.x - foot.x, next.y - foot.y, 0).normalized();
-      const Vector3 to_line = Vector3(foot.x, foot.y, 0) - eye, normal = to_line.cross(tangent);
-      const double length = normal.norm();
-      const double off = normal.dot(ray) / length;
-      // The normal's own length changes nothing while the ray is near the plane.
-      const auto eye_moved = [&](const Vector3& by) { return -by.cross(tangent).dot(ray) / length; };
-      const auto ray_turned = [&](const Vector3& axis) { return normal.dot(axis.cross(ray)) / length; };
-      Vector6 row;
-      row << eye_moved(up), ray_turned(roll_axis), ray_turned(pitch_axis), eye_moved(Vector3::UnitX()),
-          eye_moved(Vector3::UnitY()), ray_turned(up) + eye_moved(up.cross(eye));
-      squares.noalias() += row * row.transpose();
-      rows += row;
-      products += off * row;
-      sum += off;
-      square += off * off;
     }
     // The inverse of a covariance that has what marks share.
     const double kappa = common / (own + static_cast<double>(pair.marks.size()) * common);
@@ -149,6 +193,7 @@ double chance_of(double f, double freedom) {
 
 void MountDriftOptions::check() const {
   check_above("mount_drift.memory", memory, 0);
+  check_at_least("mount_drift.step", step, 0);
   check_above("mount_drift.alike_time", alike_time, 0);
   check_above("mount_drift.mark_sigma_px", mark_sigma_px, 0);
   check_above("mount_drift.line_sigma_px", line_sigma_px, 0);
@@ -162,16 +207,22 @@ MountDrift watched(const MountDrift& before, const FieldTarget& target, const Mo
   MountDrift drift = before;
   const bool goes_on = before.begun && before.mount == seen.camera.mount() && seen.t > before.t;
   if (!goes_on) drift = {.mount = seen.camera.mount(), .t = seen.t};
-  if (seen.marks.size() < kLeastMarks) return drift;
+  if (seen.marks.size() < kLeastMarks || (drift.begun && seen.t - drift.t < options.step)) return drift;
 
   PoseGaussian prior = seen.pose;
   prior.covariance =
       Eigen::Vector3d(kLoosePose * kLoosePose, kLoosePose * kLoosePose, kLooseTheta * kLooseTheta).asDiagonal();
-  // As the mount was told, if that explains nearly all; indulgence has its own mistakes.
-  PoseFit fit = fit_pose(target, {seen.marks, {}, nullptr}, prior);
-  constexpr int some = 4, of = 5;
-  if (of * fit.marks_explained < some * fit.marks_seen) fit = fit_pose(target, {indulgent(seen), {}, nullptr}, prior);
-  const RecycledVector<Pair> pairs = pairs_of(target, seen.marks, fit);
+  // As the localization has it, if that explains nearly all; indulgence has its own mistakes.
+  PoseFit fit;
+  fit.pose = seen.pose;
+  fit.line_of.assign(seen.line_of.begin(), seen.line_of.end());
+  const auto explained = std::ranges::count_if(seen.marks, [&](const LineMark& mark) {
+    return mark.line == LineMark::kCircle || is_explained(mark.line, seen.line_of);
+  });
+  constexpr double nearly_all = .8;
+  if (static_cast<double>(explained) < nearly_all * static_cast<double>(seen.marks.size()))
+    fit = fit_pose(target, {indulgent(seen), {}, nullptr}, prior);
+  const RecycledVector<Pair> pairs = pairs_of(target, seen, fit.line_of);
   if (pairs.size() < 2) return drift;
 
   FieldFromRobot pose = fit.pose.field_from_robot();

@@ -16,6 +16,7 @@ struct MountDriftOptions {
   double memory = 20;  ///< Time constant: what is older counts less and less. [s], > 0
   /// Frames within this time count as one: errors of lines are others only when these show elsewhere. [s], > 0
   double alike_time = .5;
+  double step = .1;           ///< Frames that follow sooner are not looked at, to save time. [s], >= 0
   double mark_sigma_px = .3;  ///< Of a place on a line by itself, [px], > 0
   double line_sigma_px = .3;  ///< and what all places of a line share. [px], > 0
   /// A drift is told when it moves a place of the floor 3 m away by more: about a ball's radius. [m], > 0
@@ -43,14 +44,15 @@ struct MountEvidence {
   const MountedCamera& camera;
   MountSigma nod;  ///< How much the robot shakes while driving, besides: VisionOptions::mount_sigma().
   std::span<const LineMark> marks;
-  PoseGaussian pose;  ///< Where the localization has the robot, by this mount.
-  double t = 0;       ///< Later than the frame before; else a new drive begins. [s]
+  std::span<const int> line_of;  ///< By a mark's `line`: what the localization took it for, as Localized has it.
+  PoseGaussian pose;             ///< Where the localization has the robot, by this mount.
+  double t = 0;                  ///< Later than the frame before; else a new drive begins. [s]
 };
 
-/// The drift with one frame more. Lines are taken for those of the field again, with indulgence, since a mount that
-/// has drifted spoils what the localization takes them for; then pose and mount are fitted together, and what is left
-/// of the mount when any pose will do is added. A frame with lines of one direction adds next to nothing, and one that
-/// nothing explains adds nothing.
+/// The drift with one frame more. Where the localization explains less than four fifths of what is seen, lines are
+/// taken for those of the field again, with indulgence, since a mount that has drifted spoils that; then pose and mount
+/// are fitted together, and what is left of the mount when any pose will do is added. A frame with lines of one
+/// direction adds next to nothing, and one that nothing explains adds nothing.
 ///
 /// cost     some 20 us; safe from any thread
 /// source   recursive least squares with exponential forgetting; own

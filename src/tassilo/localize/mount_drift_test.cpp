@@ -89,7 +89,8 @@ std::vector<MountDrift> watch(const Drive& drive) {
     const PoseGaussian believed =
         pose_gaussian(pose.x + drive.pose_error * gauss(random), pose.y + drive.pose_error * gauss(random),
                       pose.theta() + .01 * gauss(random), .02, .01);
-    drift = watched(drift, target, {told, {0, 0, 0, 0, 0, 0}, marks, believed, t});
+    const PoseFit fit = fit_pose(target, {marks, {}, nullptr}, believed);
+    drift = watched(drift, target, {told, {0, 0, 0, 0, 0, 0}, marks, fit.line_of, fit.pose, t});
     drifts.push_back(drift);
   }
   return drifts;
@@ -152,7 +153,8 @@ TEST(MountDrift, OneLineTellsNothing) {
     const auto pose = make_pose2<FieldFrame, RobotFrame>(2, 0, .02 * k);
     auto marks = marks_from(target, pose, truth, std::vector<double>(target.curves.lines.size(), 0), .3, random);
     std::erase_if(marks, [&](const LineMark& mark) { return mark.line != 0; });
-    drift = watched(drift, target, {told, {}, marks, pose_gaussian(pose.x, pose.y, pose.theta(), .02, .01), .1 * k});
+    drift =
+        watched(drift, target, {told, {}, marks, {}, pose_gaussian(pose.x, pose.y, pose.theta(), .02, .01), .1 * k});
   }
   EXPECT_FALSE(drifted(drift));
 }
@@ -164,10 +166,10 @@ TEST(MountDrift, AnotherMountAndAnotherDriveBeginAnew) {
   const MountDrift drift = watch(drive).back();
   ASSERT_TRUE(drifted(drift));
   const MountedCamera measured(kCamera, drive.truth), told(kCamera, kTold);
-  EXPECT_FALSE(drifted(watched(drift, target, {measured, {}, {}, pose_gaussian(0, 0, 0, .1, .1), drift.t + .1})));
-  EXPECT_FALSE(drifted(watched(drift, target, {told, {}, {}, pose_gaussian(0, 0, 0, .1, .1), 0})));
+  EXPECT_FALSE(drifted(watched(drift, target, {measured, {}, {}, {}, pose_gaussian(0, 0, 0, .1, .1), drift.t + .1})));
+  EXPECT_FALSE(drifted(watched(drift, target, {told, {}, {}, {}, pose_gaussian(0, 0, 0, .1, .1), 0})));
   // A frame without lines changes nothing.
-  EXPECT_TRUE(drifted(watched(drift, target, {told, {}, {}, pose_gaussian(0, 0, 0, .1, .1), drift.t + .1})));
+  EXPECT_TRUE(drifted(watched(drift, target, {told, {}, {}, {}, pose_gaussian(0, 0, 0, .1, .1), drift.t + .1})));
 }
 
 TEST(MountDrift, OptionsAreChecked) {
