@@ -10,7 +10,7 @@ import re
 import shutil
 import unittest
 
-from program import DATA, ProgramTest, main, png_bytes
+from program import DATA, ProgramTest, main, png_bytes, train_colors
 
 NAMES = ("x", "y", "z", "roll", "pitch", "yaw")
 CAMERA = dict(fx=216.0, fy=177.631578947, cx=187.3, cy=88.9, k=-.1458)  # that of data/msl98/d01_approach
@@ -134,7 +134,67 @@ class FromTarget(ProgramTest):
         for arguments in ((), ("--at", "1,2"), ("--at", "1,2,3,4,5"), ("--at", "one,2,3"), ("--at", "1000,0,0"), (*self.at(0), "--at-sigma", "0")):
             with self.subTest(arguments=arguments):
                 self.refuses(*self.calibrate("floor/0.png"), *camera, *arguments)
-        self.refuses("calibrate", "mount", "floor/0.png", *self.at(0), "--target", TARGET, says="--camera")
+        self.refuses("calibrate", "mount", "floor/0.png", *self.at(0), "--target", TARGET, says="--target")
+
+
+class FromLines(ProgramTest):
+    """On the shipped recordings, whose true mount is in their camera files."""
+
+    def robot(self, recording, change=None, colors="div.yaml"):
+        folder = self.folder / recording
+        folder.mkdir(exist_ok=True)
+        truth = read_mount(DATA / recording / "camera.yaml")
+        (folder / "camera.yaml").write_text(camera_yaml({n: truth[n] + (change or {}).get(n, 0) for n in NAMES}, DATA / recording / "camera.yaml"))
+        (folder / "robot.yaml").write_text(f"camera: camera.yaml\ncolors: ../{colors}\nfield: msl98\n")
+        return truth
+
+    def test_a_disturbed_mount_comes_back(self):
+        train_colors(type(self), DATA / "train_vga/samples.yaml", "vga.yaml")
+        degree = math.radians(1)
+        for recording, colors in (("d01_approach", "div.yaml"), ("d05_distract", "div.yaml"), ("d06_vga", "vga.yaml")):
+            for change in ({}, {"pitch": degree, "roll": degree, "z": .02}, {"pitch": -degree}, {"roll": -degree}):
+                with self.subTest(recording=recording, change=change):
+                    truth = self.robot(recording, change, colors)
+                    result = self.succeeds("calibrate", "mount", "--robot", f"{recording}/robot.yaml", DATA / recording / "video.mkv",
+                                           "--odometry", DATA / recording / "odometry.jsonl", "--report", "report")
+                    found = read_mount(self.folder / recording / "camera.yaml")
+                    sigmas = dict(re.findall(r"^(\w+) \[\w+\].* ([\d.]+|kept)$", result.out, re.MULTILINE))
+                    for name in ("x", "y", "yaw"):
+                        self.assertEqual(found[name], truth[name])
+                        self.assertEqual(sigmas[name], "kept", result)
+                    for name, unit, most in (("z", .001, .005), ("roll", math.radians(1), math.radians(.15)), ("pitch", math.radians(1), math.radians(.15))):
+                        off = abs(found[name] - truth[name])
+                        self.assertLess(off, most, (name, result.out))
+                        self.assertLess(off, 3 * unit * float(sigmas[name]), (name, result.out))
+
+    def test_a_run_tells_when_the_mount_has_drifted(self):
+        degree = math.radians(1)
+        for recording in ("d01_approach", "d05_distract"):
+            video, odometry = DATA / recording / "video.mkv", DATA / recording / "odometry.jsonl"
+            run = ("run", "--robot", f"{recording}/robot.yaml", "--source", video, "--odometry", odometry, "--output", f"{recording}.jsonl")
+            self.robot(recording)
+            self.assertNotIn("drifted", self.succeeds(*run).out)
+            for name, change in (("pitch", degree), ("pitch", -degree), ("roll", degree)):
+                with self.subTest(recording=recording, name=name, change=change):
+                    self.robot(recording, {name: change})
+                    told = re.search(rf"^mount: has drifted from the camera file: .*{name} ([-+.\d]+) deg \(sigma ([.\d]+)\)", self.succeeds(*run).out, re.MULTILINE)
+                    self.assertTrue(told)
+                    self.assertLess(abs(float(told[1]) + math.degrees(change)), .25)
+
+    def test_what_is_wrong_is_told(self):
+        self.robot("d01_approach")
+        self.write("lensless.yaml", "colors: div.yaml\n")
+        video = DATA / "d01_approach/video.mkv"
+        self.fails("calibrate", "mount", "--robot", "lensless.yaml", video, says="names no camera")
+        self.fails("calibrate", "mount", "--robot", "d01_approach/robot.yaml", DATA / "d06_vga/video.mkv", says="full color range")
+        self.write("gray.png", "")
+        (self.folder / "gray.png").write_bytes(png_bytes(384, [bytes(384)] * 172, 1))
+        before = (self.folder / "d01_approach/camera.yaml").read_text()
+        self.fails("calibrate", "mount", "--robot", "d01_approach/robot.yaml", "gray.png", says="shows no place of the field")
+        self.assertEqual((self.folder / "d01_approach/camera.yaml").read_text(), before)
+        self.refuses("calibrate", "mount", video, says="--robot")
+        self.refuses("calibrate", "mount", "--robot", "d01_approach/robot.yaml", video, "--at", "1,0,0", says="--at")
+        self.refuses("calibrate", "mount", "--robot", "d01_approach/robot.yaml", video, "--start-pose", "1,0", says="--start-pose")
 
 
 if __name__ == "__main__":

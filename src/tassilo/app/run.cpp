@@ -22,6 +22,7 @@
 #include "tassilo/app/run_summary.h"
 #include "tassilo/app/written_files.h"
 #include "tassilo/base/error.h"
+#include "tassilo/localize/mount_drift.h"
 
 namespace tassilo {
 namespace {
@@ -311,8 +312,27 @@ class Run {
     if (live_ != nullptr) live_->show(frame, scene, workspace_, configuration_);
     if (recorder_ != nullptr) recorder_->after(frame, scene, odometry_);
     tell_of_recording();
+    watch_mount(scene);
     summary_.add(scene);
     progress_->frame(++done_);
+  }
+
+  /// Do lines lie where the mount says? Looks at what was seen, changes nothing of it.
+  void watch_mount(const Scene& scene) {
+    const Optics* const optics = configuration_->vision.optics();
+    if (optics == nullptr || !scene.pose) return;
+    if (drift_of_ != configuration_) {
+      drift_of_ = configuration_;
+      drift_target_.emplace(configuration_->setup.vision.field);
+    }
+    PoseGaussian pose;
+    pose.x = scene.pose->x;
+    pose.y = scene.pose->y;
+    pose.theta = scene.pose->theta;
+    drift_ = watched(drift_, *drift_target_,
+                     {optics->camera, optics->mount_sigma, workspace_.marks, workspace_.line_of, pose, scene.t});
+    // The last one that was told: a robot that sees no lines in the end has not been mended.
+    if (const auto found = drifted(drift_)) summary_.set_drift(to_text(*found));
   }
 
   /// Between two frames: what was chosen or written meanwhile. Says in words what happened, nothing when nothing did.
@@ -351,6 +371,9 @@ class Run {
   SourceInfo info_;  ///< Stays as it is once other threads may look at it.
   VisionWorkspace workspace_;
   RunSummary summary_;
+  MountDrift drift_;
+  std::shared_ptr<const Configuration> drift_of_;  ///< Whose field `drift_target_` is.
+  std::optional<FieldTarget> drift_target_;
   std::optional<Progress> progress_;
   std::int64_t read_ = 0, done_ = 0;
   std::optional<ConfigurationWatch> watch_;  ///< Last: its thread uses the above.

@@ -26,6 +26,10 @@ struct RunArguments {
   bool quiet = false;
 };
 
+/// X,Y,THETA[,SIGMA_XY,SIGMA_THETA]; nothing for an empty text. Throws CLI::ValidationError: what it refuses is wrong
+/// usage.
+std::optional<StartPose> start_pose_from(const std::string& text);
+
 /// Adds what all verbs that run the vision understand. They call `understand` when all is parsed.
 void add_run_options(CLI::App& command, RunArguments& arguments);
 /// Throws CLI::ValidationError: what it refuses is wrong usage.

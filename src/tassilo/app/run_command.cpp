@@ -13,9 +13,6 @@
 #include "tassilo/app/run.h"
 
 namespace tassilo {
-namespace {
-
-/// Throws CLI::ValidationError: what it refuses is wrong usage.
 std::optional<StartPose> start_pose_from(const std::string& text) {
   if (text.empty()) return std::nullopt;
   StartPose pose;
@@ -38,8 +35,6 @@ std::optional<StartPose> start_pose_from(const std::string& text) {
             ", must be X,Y,THETA or X,Y,THETA,SIGMA_XY,SIGMA_THETA in m and rad, sigmas > 0, THETA at most a turn");
   return pose;
 }
-
-}  // namespace
 
 void add_run_options(CLI::App& command, RunArguments& arguments) {
   command.add_option("-r,--robot", arguments.robot, "robot.yaml: camera, colors, field and options of one robot");

@@ -92,6 +92,8 @@ std::string RunSummary::text(double seconds, const std::string& source) const {
   if (frames_ > 0 && seconds > 0) out += fmt::format(", {:.1f} frames/s", static_cast<double>(frames_) / seconds);
   out += fmt::format(", {} dropped\n", dropped_);
   out += source + odometry_text();
+  if (!drift_.empty())
+    out += fmt::format("mount: has drifted from the camera file: {}; `tassilo calibrate mount` measures it\n", drift_);
   if (frames_ == 0) return out;
   if (!latencies_ms_.empty())
     out += fmt::format("latency from capture to scene: median {:.1f} ms, p99 {:.1f} ms\n", quantile(latencies_ms_, 0.5),

@@ -21,6 +21,8 @@ class RunSummary {
 
   /// From the capture of a frame to its scene. [ms]
   void add_latency(double ms);
+  /// The mount is no longer what the camera file says: how it differs, in words.
+  void set_drift(std::string text) { drift_ = std::move(text); }
 
   /// A table for people, several lines, each ended. `source` are such lines of the source.
   std::string text(double seconds, const std::string& source) const;
@@ -30,6 +32,7 @@ class RunSummary {
   std::int64_t last_index_ = 0, dropped_ = 0;
   std::int64_t odometry_known_ = 0, odometry_missing_ = 0;
   SequenceCounts odometry_samples_;
+  std::string drift_;  ///< Empty while the mount is as told.
   struct Count {
     std::int64_t frames = 0, objects = 0;
   };

@@ -164,6 +164,19 @@ class LineFit {
     return count > 0 ? sum / count : 1;
   }
 
+  /// How many frames one stands for that errs by itself. >= 1
+  double alike_frames() const {
+    double frames = 0, independent = 0;
+    std::optional<double> last;
+    for (std::size_t f = 0; f < frames_.size(); ++f) {
+      if (std::ranges::count(used_[f], true) == 0) continue;
+      ++frames;
+      independent += last ? std::clamp((frames_[f].t - *last) / options_.alike_time, 0., 1.) : 1;
+      last = frames_[f].t;
+    }
+    return frames > 0 ? frames / independent : 1;
+  }
+
   Eigen::Matrix3d covariance() {
     ceres::Problem problem;
     build(problem, false);
@@ -339,6 +352,7 @@ std::string text_of(const char* name, double value, const char* unit, int digits
 
 void MountFromLinesOptions::check() const {
   check_above("mount.line_sigma_px", line_sigma_px, 0);
+  check_above("mount.alike_time", alike_time, 0);
   check_above("mount.most_height_sigma", most_height_sigma, 0);
   check_above("mount.most_angle_sigma", most_angle_sigma, 0);
 }
@@ -352,7 +366,7 @@ MountFromLines mount_from_lines(const MountedCamera& start, const FieldCurves& f
   fit.run();
   MountFromLines out = fit.result();
   if (out.points == 0) throw Error(kSubject, "no line of the field is seen, must be some that cross");
-  const Eigen::Matrix3d covariance = std::max(1., fit.variance_factor()) * fit.covariance();
+  const Eigen::Matrix3d covariance = std::max(1., fit.variance_factor()) * fit.alike_frames() * fit.covariance();
   constexpr std::array<int, kTuned> at{2, 3, 4};  // z, roll, pitch
   for (int i = 0; i < kTuned; ++i)
     for (int k = 0; k < kTuned; ++k)

@@ -24,6 +24,7 @@ struct SeenCurve {
 /// One frame, and about where the robot was. The point-mirrored pose will do: lines look the same from there.
 struct LineFrame {
   double x = 0, y = 0, theta = 0;  ///< Field frame; right to some half meter and 10 degrees. [m, rad]
+  double t = 0;                    ///< Frames that are near in time err alike; in order. [s]
   std::vector<SeenCurve> curves;
 };
 
@@ -31,6 +32,9 @@ struct MountFromLinesOptions {
   /// What all points of a line in one frame share: blur, and where the color changes; and what they share in all
   /// frames: the lens, worn paint, a wall that leans. [px], > 0
   double line_sigma_px = .3;
+  /// Frames within this time count as one for standard deviations: while a robot drives 1 m/s and turns by 1 rad/s, a
+  /// line moves by a part of the image in it, and only then its errors are others. [s], > 0
+  double alike_time = .5;
   /// Standard deviations beyond which a mount counts as not determined: a tenth of usual heights, and what moves a
   /// place 3 m away by half a meter. [m, rad], > 0
   double most_height_sigma = .05, most_angle_sigma = .025;

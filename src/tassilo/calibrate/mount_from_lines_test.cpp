@@ -33,7 +33,7 @@ FieldCurves middle_size() {
 LineFrame frame_from(const MountedCamera& camera, const FieldCurves& field, const FieldFromRobot& pose,
                      std::mt19937& random, double sigma, double common) {
   std::normal_distribution<double> gauss;
-  LineFrame frame{pose.x, pose.y, pose.theta(), {}};
+  LineFrame frame{pose.x, pose.y, pose.theta(), 0, {}};
   const auto robot_from_field = inverse(pose);
   const auto add = [&](SeenCurve seen, double length, const std::function<FieldPoint(double)>& at) {
     struct Place {
@@ -83,6 +83,7 @@ std::vector<LineFrame> drive(unsigned seed, double sigma, double common, std::si
     frame.x += .1 * gauss(random);
     frame.y += .1 * gauss(random);
     frame.theta += .03 * gauss(random);
+    frame.t = static_cast<double>(frames.size());
     frames.push_back(std::move(frame));
   }
   return frames;
@@ -129,6 +130,15 @@ TEST(MountFromLines, SigmasAreTrueOrCareful) {
     EXPECT_LT(square, 1.5);
     EXPECT_GT(square, .05);
   }
+}
+
+TEST(MountFromLines, FramesOfOneMomentTellNoMoreThanOne) {
+  const FieldCurves field = middle_size();
+  auto frames = drive(8, .3, .3);
+  const MountSigma apart = mount_from_lines({kCamera, kMount}, field, frames).estimate.sigma;
+  for (LineFrame& frame : frames) frame.t = 0;
+  const MountSigma together = mount_from_lines({kCamera, kMount}, field, frames).estimate.sigma;
+  EXPECT_NEAR(together.pitch / apart.pitch, std::sqrt(static_cast<double>(frames.size())), 1e-3);
 }
 
 TEST(MountFromLines, ALineTakenForAnotherIsThrownOut) {

@@ -103,6 +103,7 @@ Scene Vision::operator()(const Frame& frame, VisionWorkspace& workspace, const O
     Lines lines = timed(scene, "lines", [&] { return stages_.lines(view); });
     scene.lines = std::move(lines.lines);
     scene.circles = std::move(lines.circles);
+    workspace.marks = std::move(lines.marks);
     scene.free_space =
         timed(scene, "free_space", [&] { return stages_.free_space(*sectors_, workspace.surface, scene.balls); });
     VisionHistory& history = workspace.history;
@@ -119,7 +120,7 @@ Scene Vision::operator()(const Frame& frame, VisionWorkspace& workspace, const O
                                        *target_,
                                        before,
                                        motion,
-                                       {lines.marks, scene.goals, &*scene.free_space},
+                                       {workspace.marks, scene.goals, &*scene.free_space},
                                        workspace.boundary ? &*workspace.boundary : nullptr,
                                        frame.t});
     });
@@ -128,6 +129,7 @@ Scene Vision::operator()(const Frame& frame, VisionWorkspace& workspace, const O
     for (std::size_t k = 0; k < localized.line_of.size() && k < scene.lines.size(); ++k)
       if (localized.line_of[k] >= 0)
         scene.lines[k].model = target_->curves.lines[static_cast<std::size_t>(localized.line_of[k])].name;
+    workspace.line_of = std::move(localized.line_of);
     history.beliefs.add(frame.t, std::move(localized.belief));
     const Timed<TrackState>* const followed = history.tracks.before(frame.t);
     TrackState nothing;

@@ -47,6 +47,8 @@ struct VisionWorkspace {
   Surface surface;
   bool watch_boundary = false;       ///< Find the boundary even when the localization does not ask for it.
   std::optional<Boundary> boundary;  ///< Where somebody asked for it.
+  RecycledVector<LineMark> marks;    ///< Of lines, as the localization was given them.
+  RecycledVector<int> line_of;  ///< By a mark's `line`: the line of the field it was taken for, -1 or beyond: none.
   VisionHistory history;
 };
 
