@@ -505,6 +505,34 @@ TEST(FloorGaussian, EqualsMonteCarlo) {
   EXPECT_LT(bias.norm(), .1 * std::sqrt(expected->covariance.trace()));
 }
 
+TEST(FloorShift, ThereAndBackAgain) {
+  const CameraMount from{.06, .015, .52, .007, .244, -.014}, to{.07, .01, .55, -.02, .26, .03};
+  for (const FloorPoint at : {FloorPoint{1, .2}, FloorPoint{3, -1}, FloorPoint{5, 2}}) {
+    const auto moved = floor_point_moved(from, to, at);
+    ASSERT_TRUE(moved);
+    const auto back = floor_point_moved(to, from, *moved);
+    ASSERT_TRUE(back);
+    EXPECT_NEAR(distance(*back, at), 0, 1e-9);
+  }
+}
+
+TEST(FloorShift, IsWhatGeometrySays) {
+  const CameraMount from{0, 0, .5, 0, .2, 0};
+  CameraMount to = from;
+  EXPECT_NEAR(floor_shift(from, to), 0, 1e-12);
+  constexpr double step = 1e-6;
+  to.z += step;  // similar triangles
+  EXPECT_NEAR(floor_shift(from, to) / step, 3 / .5, 1e-3);
+  to = from;
+  to.yaw += step;
+  EXPECT_NEAR(floor_shift(from, to) / step, 3, 1e-3);
+  to = from;
+  to.pitch += step;  // straight ahead: a ray's height over the floor and its length
+  EXPECT_NEAR(floor_shift(from, to) / step, (9 + .25) / .5, 1e-2);
+  to.pitch = -.5;
+  EXPECT_TRUE(std::isinf(floor_shift(from, to)));
+}
+
 TEST(FloorGaussian, NothingWithoutFloor) {
   EXPECT_FALSE(floor_gaussian(MountedCamera(kVga, kTilted), {320, 2}, 1, {}));
 }
