@@ -44,7 +44,7 @@ export function App({ session }: { session: Session }) {
         <ConditionChip session={session} />
         <FreezeButton session={session} />
       </header>
-      <Refusal session={session} />
+      <Notices session={session} />
       <Content session={session} view={view} />
     </>
   );
@@ -96,9 +96,14 @@ function FreezeButton({ session }: { session: Session }) {
   );
 }
 
-/// A changed configuration file that was refused is told on every view: the robot goes on with the one before.
-function Refusal({ session }: { session: Session }) {
+/// What spoils all that is seen is told on every view: a changed configuration that was refused, a camera that has moved, no picture.
+function Notices({ session }: { session: Session }) {
   const state = useValue(session.server);
-  const refusal = state?.configuration.refusal;
-  return refusal ? <p class="notice" role="alert">configuration refused, the one before goes on: {refusal}</p> : null;
+  if (state === null) return null;
+  const notices = [
+    state.configuration.refusal && `configuration refused, the one before goes on: ${state.configuration.refusal}`,
+    state.mount_drift && `the camera's mount has drifted from its file: ${state.mount_drift}; tassilo calibrate mount measures it`,
+    state.picture_fault && `no picture: ${state.picture_fault}`,
+  ].filter((notice) => notice);
+  return <>{notices.map((notice) => <p key={notice} class="notice" role="alert">{notice}</p>)}</>;
 }

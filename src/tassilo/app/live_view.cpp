@@ -166,6 +166,11 @@ void LiveView::add_latency(double ms) {
   latency_ms_.add(ms, std::chrono::steady_clock::now());
 }
 
+void LiveView::set_mount_drift(const std::string& text) {
+  const std::lock_guard lock(mutex_);
+  seen_.mount_drift = text;
+}
+
 void LiveView::leave() {
   const std::lock_guard loading(loading_);
   const std::lock_guard lock(mutex_);
@@ -323,6 +328,7 @@ std::string LiveView::state_json() const {
                 {"clients", counts.clients},
                 {"sent", counts.sent},
                 {"dropped", counts.dropped}}},
+              {"mount_drift", seen_.mount_drift},
               {"picture_fault", seen_.picture_fault},
               {"recording", recording},
               {"ended", load_ == nullptr && seen_.frames > 0}});

@@ -62,6 +62,8 @@ class LiveView {
             const std::shared_ptr<const Configuration>& configuration);
   /// From the capture of a frame to its scene. [ms]
   void add_latency(double ms);
+  /// How the mount differs from the camera file, in words; empty: it does not, as far as is known.
+  void set_mount_drift(const std::string& text);
   /// No more frames come: what `begin` gave is no longer asked.
   void leave();
 
@@ -94,6 +96,7 @@ class LiveView {
     std::chrono::steady_clock::time_point shown_at;
     std::int64_t taken_over = 0;
     std::string refusal;
+    std::string mount_drift;
     std::string picture_fault;  ///< Why the last picture could not be made; empty when it could.
   };
 

@@ -322,8 +322,11 @@ class Run {
     const Optics* const optics = configuration_->vision.optics();
     if (optics == nullptr || !scene.pose) return;
     if (drift_of_ != configuration_) {
+      const VisionSetup& setup = configuration_->setup.vision;
+      // What was said of another mount says nothing of this one.
+      if (drift_of_ && drift_of_->setup.vision.mount != setup.mount) tell_drift("");
       drift_of_ = configuration_;
-      drift_target_.emplace(configuration_->setup.vision.field);
+      drift_target_.emplace(setup.field);
     }
     PoseGaussian pose;
     pose.x = scene.pose->x;
@@ -332,7 +335,11 @@ class Run {
     drift_ = watched(drift_, *drift_target_,
                      {optics->camera, optics->mount_sigma, workspace_.marks, workspace_.line_of, pose, scene.t});
     // The last one that was told: a robot that sees no lines in the end has not been mended.
-    if (const auto found = drifted(drift_)) summary_.set_drift(to_text(*found));
+    if (const auto found = drifted(drift_)) tell_drift(to_text(*found));
+  }
+  void tell_drift(const std::string& text) {
+    summary_.set_drift(text);
+    if (live_ != nullptr) live_->set_mount_drift(text);
   }
 
   /// Between two frames: what was chosen or written meanwhile. Says in words what happened, nothing when nothing did.

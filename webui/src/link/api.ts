@@ -25,6 +25,8 @@ export interface ServerState {
   ended: boolean;
   /// Servers may leave these out.
   latency_ms?: number | null;
+  mount_drift?: string;
+  picture_fault?: string;
   recording?: Recording;
   field?: FieldPlan | null;
 }
