@@ -177,33 +177,18 @@ void bind_segment(py::module_& module) {
       "Opens every region of a segmentation by 3 x 3 pixels, as segment_opened does on the way.", "segmentation"_a);
 }
 
-constexpr const char* kOptionsMust =
-    "must be one of outlier_share, brightness_outlier_share, min_cluster_share, closing_px, "
-    "opening_px, noise_margin, darkest_shade, brightest_light, white_reach, black_reach";
-
 TrainingOptions training_options(const std::map<std::string, double>& values) {
   TrainingOptions options;
-  const std::map<std::string, double*> real{{"outlier_share", &options.outlier_share},
-                                            {"brightness_outlier_share", &options.brightness_outlier_share},
-                                            {"min_cluster_share", &options.min_cluster_share},
-                                            {"noise_margin", &options.noise_margin},
-                                            {"darkest_shade", &options.darkest_shade},
-                                            {"brightest_light", &options.brightest_light},
-                                            {"white_reach", &options.white_reach},
-                                            {"black_reach", &options.black_reach}};
-  const std::map<std::string, int*> whole{{"closing_px", &options.closing_px}, {"opening_px", &options.opening_px}};
   for (const auto& [name, value] : values) {
-    if (const auto at = real.find(name); at != real.end()) {
-      *at->second = value;
-    } else if (const auto place = whole.find(name); place != whole.end()) {
-      if (!(value >= 0 && value <= 255) || value != static_cast<int>(value))
-        refuse(name, "is " + std::to_string(value) + ", must be a whole number of steps");
-      *place->second = static_cast<int>(value);
-    } else {
-      refuse("option", "is '" + name + "', " + kOptionsMust);
+    const auto numbers = training_numbers();
+    const auto number = std::ranges::find(numbers, name, &TrainingNumber::key);
+    if (number == numbers.end()) {
+      std::string names;
+      for (const TrainingNumber& one : numbers) names.append(names.empty() ? "" : ", ").append(one.key);
+      refuse("option", "is '" + name + "', must be one of " + names);
     }
+    as_argument([&] { number->set(options, value); });
   }
-  as_argument([&] { options.check(); });
   return options;
 }
 

@@ -17,19 +17,36 @@ TIMEOUT_S = 240  # of all steps
 class Browser(ProgramTest):
     pages = screenshots = None
 
-    def test_pages_show_and_change_what_the_program_does(self):
+    def setUp(self):
         if shutil.which("node") is None or not (ROOT / "webui/node_modules").exists():
             self.skipTest("node or the packages of webui/ are not installed; tools/install_deps.sh installs them")
-        self.write("robot.yaml", f"{{camera: {RECORDING / 'camera.yaml'}, field: msl98}}\n")
-        command = ["node", ROOT / "webui/e2e/browser.mjs", "--screenshots", self.screenshots, "--", self.program, "serve", "--robot", "robot.yaml",
-                   "--colors", "div.yaml", "--source", RECORDING / "video.mkv", "--odometry", RECORDING / "odometry.jsonl", "--port", "0",
-                   "--pages", self.pages]
+
+    def browse(self, steps, recording, *arguments):
+        """Does webui/e2e/STEPS in a browser with the program, which sees a recording; what the steps say."""
+        command = ["node", ROOT / "webui/e2e" / steps, "--screenshots", self.screenshots, "--", self.program, "serve", "--robot", "robot.yaml",
+                   "--source", recording / "video.mkv", "--odometry", recording / "odometry.jsonl", "--port", "0", "--pages", self.pages, *arguments]
         done = subprocess.run([str(part) for part in command], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=TIMEOUT_S,
                               text=True)
         if done.returncode == 77:
             self.skipTest(done.stdout.strip())
         self.assertEqual(done.returncode, 0, done.stdout)
         self.assertIn("all steps passed", done.stdout)
+        return done.stdout
+
+    def test_colors_are_trained_in_the_browser(self):
+        recording = DATA / "d06_vga"
+        shutil.copytree(DATA / "train_vga", self.folder / "train_vga")
+        self.succeeds("train", "colors", "train_vga/samples.yaml", "-o", "vga.yaml", "-q")
+        self.write("robot.yaml", f"{{camera: {recording / 'camera.yaml'}, colors: vga.yaml, field: msl98}}\n")
+        print(self.browse("colors.mjs", recording, "--samples", "train_vga/samples.yaml"))
+        # What was saved there, the command line trains alike.
+        kept = [line for line in (self.folder / "vga.yaml").read_text().splitlines() if line.startswith("table:")]
+        self.assertEqual(len(kept), 1)
+        self.succeeds("train", "colors", "train_vga/samples.yaml", "-o", "again.yaml", "-q")
+
+    def test_pages_show_and_change_what_the_program_does(self):
+        self.write("robot.yaml", f"{{camera: {RECORDING / 'camera.yaml'}, field: msl98}}\n")
+        self.browse("browser.mjs", RECORDING, "--colors", "div.yaml")
         # What was recorded there is seen again.
         parts = list((self.folder / "recordings").iterdir())
         self.assertTrue(parts)

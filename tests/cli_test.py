@@ -478,7 +478,7 @@ class TrainColors(CliTest):
                              ("image: noimage.png, class: green, rectangle: [0, 0, 9, 9]", ("noimage.png", "does not exist")),
                              ("image: still.png, frame: 3, class: green, rectangle: [0, 0, 9, 9]", ("still.png", "frame 3")),
                              ("image: still.png, frame: -1, class: green, rectangle: [0, 0, 9, 9]", ("'-1'",)),
-                             (where, ("rectangle, polygon or mask",)),
+                             (where, ("rectangle, polygon, stroke or mask",)),
                              (f"{where}, rectangle: [5, 5, 5, 9]", ("rectangle is empty",)),
                              (f"{where}, rectangle: [5, 5, 9]", ("rectangle",)),
                              (f"{where}, polygon: [[0, 0], [3, 3]]", ("3",)),

@@ -8,12 +8,14 @@ import hashlib
 import http.client
 import json
 import os
+import pathlib
 import re
 import shutil
 import signal
 import socket
 import struct
 import subprocess
+import tempfile
 import time
 import unittest
 
@@ -68,9 +70,11 @@ class Channel:
 class Served(ProgramTest):
     """A server to ask; other tests of it begin with this, too."""
 
-    def serve(self, *arguments, source=(RECORDING / "video.mkv", "--odometry", RECORDING / "odometry.jsonl"), **options):
+    def serve(self, *arguments, robot="robot.yaml", colors="div.yaml",
+              source=(RECORDING / "video.mkv", "--odometry", RECORDING / "odometry.jsonl"), **options):
         """Starts the program on a port of its choice and waits until frames are seen."""
-        self.process = self.start("serve", "--robot", "robot.yaml", "--colors", "div.yaml", "--source", *source, "--port", "0", *arguments,
+        colors = ["--colors", colors] if colors else []
+        self.process = self.start("serve", "--robot", robot, *colors, "--source", *source, "--port", "0", *arguments,
                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options)
         self.addCleanup(self.stop)
         self.said = self.process.stdout.readline().decode()
@@ -106,6 +110,20 @@ class Served(ProgramTest):
     def setUp(self):
         shutil.copy(RECORDING / "camera.yaml", self.folder / "camera.yaml")
         self.write("robot.yaml", "{camera: camera.yaml, field: msl98}\n")
+
+    def send(self, method, path, value, status=200):
+        got, data, _ = self.ask(method, path, json.dumps(value), {"Content-Type": "application/json"})
+        self.assertEqual(got, status, data)
+        return json.loads(data) if got == 200 else data.decode()
+
+    def training_folder(self):
+        """A robot file with a color table of its own."""
+        training = pathlib.Path(tempfile.mkdtemp(dir=self.folder))
+        shutil.copy(RECORDING / "camera.yaml", training)
+        for name in ("div.yaml", "div.png"):
+            shutil.copy(self.folder / name, training)
+        (training / "robot.yaml").write_text("{camera: camera.yaml, field: msl98, colors: div.yaml}\n")
+        return training
 
 
 class Serve(Served):
@@ -186,6 +204,91 @@ class Serve(Served):
         self.assertEqual(values()["ball_max"], 7)
         self.until(lambda: json.loads(scenes.receive()[1])["pose"]["kind"] == "model")
         scenes.close()
+
+    @staticmethod
+    def frame_of(data):
+        """(width, height, full range, index, Y rows) of the bytes of a frame."""
+        magic, width, height, full, index, _ = struct.unpack("<4sIIIqd", data[:32])
+        assert magic == b"TYUV" and len(data) == 32 + height * (width + 2 * ((width + 1) // 2))
+        return width, height, full, index
+
+    def test_frames_come_as_they_are_classified(self):
+        self.serve()
+        channel = Channel(self.port, "frame")
+        is_text, data = channel.receive()
+        channel.close()
+        self.assertFalse(is_text)
+        width, height, full, index = self.frame_of(data)
+        self.assertEqual((width, height, full), (384, 172, 0))
+        kept = self.send("POST", "/api/training/images", {"frame": index})
+        status, again, _ = self.ask("GET", f"/api/training/images/{kept['id']}")
+        self.assertEqual((status, again), (200, data))
+        # Nobody listens: the next one is kept.
+        kept = self.send("POST", "/api/training/images", {"frame": None})
+        self.assertFalse(kept["kept"])
+        self.assertGreater(self.frame_of(self.ask("GET", f"/api/training/images/{kept['id']}")[1])[3], -1)
+
+    def test_colors_are_trained_saved_taken_over_and_rolled_back(self):
+        training = self.training_folder()
+        self.serve(robot=training / "robot.yaml", colors=None)
+        self.until(lambda: self.get("/api/state")["frames"] > 0)
+        before = self.get("/api/training")
+        self.assertEqual(before["files"]["refusal"], "")
+        self.assertEqual((before["samples"], before["history"], before["is_saved"]), ([], [], True))
+        table = self.get("/api/training/table")
+        image = self.send("POST", "/api/training/images", {})["id"]
+        draft = {"version": before["version"], "options": {"closing_px": 7}, "brightness": {"green": [40, 200]},
+                 "samples": [{"image": image, "class": "green", "rectangle": [180, 140, 220, 165]},
+                             {"image": image, "class": "green", "stroke": [[150, 150], [170, 160]], "radius": 4}]}
+        result = self.send("PUT", "/api/training/draft?class=green", draft)
+        self.assertEqual(result["version"], before["version"] + 1)
+        self.assertEqual(result["table"]["brightness"], {"green": [40, 200]})
+        self.assertEqual([c["samples"] for c in result["classes"] if c["class"] == "green"], [2])
+        self.assertEqual(len(base64.b64decode(result["table"]["chroma"])), 65536)
+        density = base64.b64decode(result["seen"]["density"])
+        self.assertEqual(max(density), 255)
+        self.assertEqual(sum(result["seen"]["brightness"]), sum(c["pixels"] for c in result["classes"]))
+        # Densest where the table says green.
+        self.assertTrue(base64.b64decode(result["table"]["chroma"])[density.index(255)] & 1 << 2)
+
+        self.assertIn("somebody else", self.send("PUT", "/api/training/draft", draft, 409))
+        self.assertIn("closing_px", self.send("PUT", "/api/training/draft", draft | {"options": {"closing_px": 99}}, 400))
+        self.assertIn("must be one of the pictures",
+                      self.send("PUT", "/api/training/draft", draft | {"version": result["version"], "samples": [draft["samples"][0] | {"image": "9"}]}, 409))
+        self.until(lambda: self.get("/api/training/quality")["version"] == result["version"])
+
+        self.assertIn("version", self.send("POST", "/api/training/save", {"version": 0}, 409))
+        self.assertEqual(sorted(path.name for path in training.iterdir()), ["camera.yaml", "div.png", "div.yaml", "robot.yaml"])
+        saved = self.send("POST", "/api/training/save", {"version": result["version"], "notes": "in the test"})
+        self.assertTrue(saved["is_saved"] and saved["images"][0]["kept"])
+        self.assertEqual([entry["in_use"] for entry in saved["history"]], [True, False])
+        self.assertTrue(saved["history"][0]["notes"].startswith("in the test"))
+        self.assertEqual(self.get("/api/training/table"), result["table"])
+        self.until(lambda: self.get("/api/state")["configuration"]["taken_over"] > 0)
+        self.assertEqual(self.get("/api/state")["configuration"]["refusal"], "")
+        # The command line makes the same of the same files.
+        done = self.tell("train", "colors", training / "samples.yaml", "-o", training / "again.yaml", "--closing", "7", "--brightness", "green=40,200")
+        self.assertEqual(done.code, 0, done)
+        named = re.search("table: (.*)", (training / "div.yaml").read_text())[1]
+        self.assertEqual((training / "again.png").read_bytes(), (training / named).read_bytes())
+
+        back = self.send("POST", "/api/training/restore", {"id": saved["history"][1]["id"]})
+        self.assertEqual([entry["in_use"] for entry in back["history"]], [False, True])
+        self.assertEqual(self.get("/api/training/table"), table)
+        self.assertEqual(len(back["samples"]), 2)
+        self.send("POST", "/api/training/restore", {"id": "../../div"}, 409)
+        self.assertEqual(self.ask("DELETE", f"/api/training/images/{image}")[0], 409)
+        self.assertEqual(self.ask("DELETE", "/api/training/images/x")[0], 404)
+
+    def test_training_starts_from_the_samples_file(self):
+        self.serve("--samples", DATA / "train_div/samples.yaml")
+        self.until(lambda: self.get("/api/state")["frames"] > 0)
+        training = self.get("/api/training")
+        self.assertEqual(training["files"]["refusal"], "")
+        self.assertEqual({entry["class"] for entry in training["samples"]}, {"black", "white", "green", "blue", "cyan", "magenta", "red", "yellow"})
+        self.assertTrue(all(image["kept"] for image in training["images"]))
+        # The table in use was trained from the same file.
+        self.assertEqual(self.get("/api/training/result")["table"], self.get("/api/training/table"))
 
     def test_keeps_others_out(self):
         port = self.serve("--token", TOKEN)

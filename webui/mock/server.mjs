@@ -8,6 +8,7 @@ import path from "node:path";
 import { fileURLToPath } from "node:url";
 import { parseArgs } from "node:util";
 import { WebSocketServer } from "ws";
+import { MockTraining } from "./training.mjs";
 
 const here = path.dirname(fileURLToPath(import.meta.url));
 const { values: options } = parseArgs({
@@ -27,6 +28,7 @@ const every_option = new Map(stages.flatMap(options_of).map((option) => [option.
 const filed = (option) => robot_file[option.key] ?? option.default;
 for (const option of every_option.values()) option.value = filed(option);
 
+const training = new MockTraining();
 const state = { frame: 0, taken_over: 0, sent: 0, dropped: 0 };
 
 const recording = { on: false, finishing: false, folder: "/home/robot/recordings", name: "", parts: 0, seconds: 0, frames: 0, bytes: 0, dropped: 0, trouble: "" };
@@ -96,7 +98,7 @@ const types = { ".html": "text/html; charset=utf-8", ".js": "text/javascript", "
 
 function answer(response, status, body, type = "application/json") {
   // The policy of the real server: what it would refuse must not work here either.
-  response.writeHead(status, { "Content-Type": type, "Content-Security-Policy": "default-src 'self'", "X-Content-Type-Options": "nosniff", "Cache-Control": "no-store" });
+  response.writeHead(status, { "Content-Type": type, "Content-Security-Policy": "default-src 'self'; img-src 'self' blob: data:; style-src 'self' 'unsafe-inline'", "X-Content-Type-Options": "nosniff", "Cache-Control": "no-store" });
   response.end(body);
 }
 
@@ -113,7 +115,8 @@ function is_own_page({ headers }) {
 
 async function handle(request, response) {
   if (!is_own_page(request)) return answer(response, 403, "the request comes from a page elsewhere", "text/plain");
-  const { pathname } = new URL(request.url, "http://mock");
+  const { pathname, searchParams } = new URL(request.url, "http://mock");
+  if (pathname.startsWith("/api/training")) return answer_training(request, response, pathname.slice("/api/training".length), searchParams);
   if (pathname === "/api/state" && request.method === "GET") return answer(response, 200, JSON.stringify(server_state()));
   if (pathname === "/api/recording" && request.method === "GET") return answer(response, 200, JSON.stringify(recording_now()));
   if (pathname === "/api/recording" && request.method === "PUT") {
@@ -145,6 +148,17 @@ async function handle(request, response) {
   return answer(response, 200, await readFile(file), types[path.extname(file)] ?? "application/octet-stream");
 }
 
+async function answer_training(request, response, rest, query) {
+  try {
+    const said = training.answer(request.method, rest, query, await body_of(request));
+    if (said === null) return answer(response, 404, "not found", "text/plain");
+    return answer(response, 200, said, typeof said === "string" ? "application/json" : "application/octet-stream");
+  } catch (error) {
+    if (error.status === undefined) throw error;
+    return answer(response, error.status, error.message, "text/plain");
+  }
+}
+
 function server_state() {
   return {
     version: "0.1.0", robot: "robot.yaml", source: { name: "mock", description: `${scenes.length} recorded scenes, over and over` },
@@ -163,7 +177,7 @@ const server = createServer((request, response) => handle(request, response).cat
 const sockets = new WebSocketServer({ noServer: true });
 server.on("upgrade", (request, socket, head) => {
   const channel = new URL(request.url, "http://mock").pathname;
-  if (!is_own_page(request) || (channel !== "/ws/scene" && channel !== "/ws/picture")) return socket.destroy();
+  if (!is_own_page(request) || !["/ws/scene", "/ws/picture", "/ws/frame"].includes(channel)) return socket.destroy();
   sockets.handleUpgrade(request, socket, head, (client) => { client.channel = channel; });
 });
 
@@ -193,6 +207,7 @@ setInterval(() => {
   }
   publish("/ws/scene", JSON.stringify(scene_now()));
   publish("/ws/picture", numbered(pictures[state.frame % pictures.length], state.frame));
+  publish("/ws/frame", training.frame(state.frame, state.frame / rate_hz));
 }, 1000 / rate_hz);
 
 server.listen(Number(options.port), "127.0.0.1", () => console.log(`http://127.0.0.1:${server.address().port}/`));

@@ -1,4 +1,5 @@
 import { useEffect, useState } from "preact/hooks";
+import { ColorsPage } from "./colors/colors_page";
 import { LiveView } from "./live/live_view";
 import { changed_keys } from "./stages/model";
 import { StagesPage } from "./stages/stages_page";
@@ -8,6 +9,7 @@ import type { Session } from "./session";
 const views = [
   { id: "live", title: "Live" },
   { id: "stages", title: "Stages" },
+  { id: "colors", title: "Colors" },
 ] as const;
 type View = (typeof views)[number]["id"];
 
@@ -35,6 +37,7 @@ export function App({ session }: { session: Session }) {
             <a key={id} href={`#/${id}`} aria-current={view === id ? "page" : undefined}>
               {title}
               {id === "stages" && <ChangedBadge session={session} />}
+              {id === "colors" && <UnsavedBadge session={session} />}
             </a>
           ))}
         </nav>
@@ -52,7 +55,7 @@ function Content({ session, view }: { session: Session; view: View }) {
   const lost = useValue(session.condition).tone === "bad";
   return (
     <main class={lost ? "old" : undefined} data-show="content">
-      {view === "live" ? <LiveView session={session} /> : <StagesPage session={session} />}
+      {view === "live" ? <LiveView session={session} /> : view === "stages" ? <StagesPage session={session} /> : <ColorsPage session={session} />}
     </main>
   );
 }
@@ -61,6 +64,11 @@ function ChangedBadge({ session }: { session: Session }) {
   const { stages } = useValue(session.stages.view);
   const changed = changed_keys(stages ?? []).length;
   return changed === 0 ? null : <span class="badge" aria-label={`${changed} changed`}>{changed}</span>;
+}
+
+function UnsavedBadge({ session }: { session: Session }) {
+  const { training, is_saved } = useValue(session.colors.training.view);
+  return training === null || is_saved ? null : <span class="badge" role="img" aria-label="not saved" title="not saved">●</span>;
 }
 
 function ConditionChip({ session }: { session: Session }) {

@@ -1,3 +1,4 @@
+import { ColorsSession } from "./colors/colors_session";
 import { Channel, browser_world } from "./link/channel";
 import { type Api, server_api, type ServerState } from "./link/api";
 import { type Condition, condition_of } from "./link/condition";
@@ -29,8 +30,10 @@ export class Session {
   readonly server = new Observable<ServerState | null>(null);
   readonly condition = new Observable<Condition>({ tone: "warning", text: "connecting" });
   readonly stages: StagesModel;
+  readonly colors = new ColorsSession(this.live.frozen);
   readonly recording = new RecordingModel();
   private trouble = "";
+  private pictures_wanted = true;
   private decoded: Picture | null = null;
   private readonly decoder = new NewestDecoder<Blob, Picture>(decode, (picture) => {
     this.decoded?.bitmap.close();
@@ -65,15 +68,24 @@ export class Session {
     setInterval(() => this.judge(), 250);
     addEventListener("online", () => this.retry());
     // Nobody looks: the radio link has better things to carry, and the server need not draw.
-    document.addEventListener("visibilitychange", () => {
-      if (document.hidden) this.picture_channel.stop();
-      else this.picture_channel.start();
-    });
+    document.addEventListener("visibilitychange", () => this.listen_to_pictures());
+  }
+
+  /// Pages without the annotated picture say so.
+  want_pictures(wanted: boolean): void {
+    this.pictures_wanted = wanted;
+    this.listen_to_pictures();
+  }
+
+  private listen_to_pictures(): void {
+    if (document.hidden || !this.pictures_wanted) this.picture_channel.stop();
+    else this.picture_channel.start();
   }
 
   retry(): void {
     this.scene_channel.retry();
     this.picture_channel.retry();
+    this.colors.pictures.retry();
   }
 
   toggle_freeze(): void {

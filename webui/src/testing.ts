@@ -1,3 +1,6 @@
+import type { ColorTable } from "./colors/classify";
+import { color_classes } from "./colors/color_class";
+import type { YuvFrame } from "./link/frame_bytes";
 import type { Scene } from "./scene";
 
 // What several tests need; no part of the pages.
@@ -16,4 +19,37 @@ export function numbers_from(seed: number, low: number, high: number): () => num
 
 export function empty_scene(frame = 0): Scene {
   return { frame, t: frame / 20, pose: null, balls: [], goals: [], robots: [], lines: [], free_space: null, tracks: [], why: {}, timing_ms: { total: 1 } };
+}
+
+/// A message of /ws/frame.
+export function frame_bytes({ width, height, range, frame, t, y, u, v }: YuvFrame): ArrayBuffer {
+  const bytes = new Uint8Array(32 + y.length + u.length + v.length);
+  const view = new DataView(bytes.buffer);
+  bytes.set([...("TYUV")].map((letter) => letter.charCodeAt(0)));
+  [width, height, range === "full" ? 1 : 0].forEach((value, i) => view.setUint32(4 + 4 * i, value, true));
+  view.setBigInt64(16, BigInt(frame), true);
+  view.setFloat64(24, t, true);
+  bytes.set(y, 32);
+  bytes.set(u, 32 + y.length);
+  bytes.set(v, 32 + y.length + u.length);
+  return bytes.buffer;
+}
+
+/// Every cell with bits, every class with an interval, and a priority of its own.
+export function random_table(seed: number): ColorTable {
+  const random = numbers_from(seed, 0, 1);
+  const classes = color_classes.slice(1);
+  const brightness = Object.fromEntries(classes.map((color) => {
+    const [a, b] = [Math.floor(256 * random()), Math.floor(256 * random())];
+    return [color, [Math.min(a, b), Math.max(a, b)] as const];
+  }));
+  const priority = classes.map((color) => ({ color, place: random() })).sort((a, b) => a.place - b.place).map(({ color }) => color);
+  return { chroma: Uint8Array.from({ length: 65536 }, () => 256 * random()), brightness, priority, range: "limited" };
+}
+
+export function random_frame(seed: number, width: number, height: number): YuvFrame {
+  const random = numbers_from(seed, 0, 256);
+  const fill = (length: number): Uint8Array => Uint8Array.from({ length }, random);
+  const chroma = Math.ceil(width / 2) * height;
+  return { width, height, range: seed % 2 === 0 ? "limited" : "full", frame: seed, t: seed / 20, y: fill(width * height), u: fill(chroma), v: fill(chroma) };
 }

@@ -9,24 +9,21 @@
 #include <string>
 #include <vector>
 
+#include "tassilo/app/calibration_views.h"
 #include "tassilo/app/commands.h"
 #include "tassilo/app/written_files.h"
 #include "tassilo/base/error.h"
-#include "tassilo/calibrate/checkerboard.h"
 #include "tassilo/calibrate/intrinsics.h"
 #include "tassilo/files/atomic_file.h"
 #include "tassilo/files/camera_file.h"
 #include "tassilo/files/png.h"
-#include "tassilo/overlay/calibration_picture.h"
 #include "tassilo/overlay/target_sheet.h"
-#include "tassilo/source/frame_source.h"
 
 namespace tassilo {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostImages = 500;
 constexpr double kScreenPixels = 4000;  ///< Of targets as PNG. [px/m]
 
 struct IntrinsicsArguments {
@@ -35,69 +32,6 @@ struct IntrinsicsArguments {
   IntrinsicsOptions options;
   bool keep_mount = true, quiet = false;
 };
-
-/// An image that was looked at, and what was found.
-struct Look {
-  std::string image;
-  std::optional<std::size_t> view;  ///< Index of its view.
-  std::string reason;               ///< Why there is none.
-};
-
-struct Looks {
-  ImageSize size;
-  std::vector<Look> looks;
-  std::vector<TargetView> views;
-};
-
-void warn(const std::string& what, const std::string& reason) {
-  std::fputs(fmt::format("tassilo: warning: {}: {}\n", what, reason).c_str(), stderr);
-}
-
-std::vector<std::uint8_t> gray_of(const FrameView& view) {
-  std::vector<std::uint8_t> gray;
-  gray.reserve(static_cast<std::size_t>(view.width()) * static_cast<std::size_t>(view.height()));
-  for (int r = 0; r < view.height(); ++r)
-    for (int c = 0; c < view.width(); ++c) gray.push_back(view.y(c, r));
-  return gray;
-}
-
-/// Looks for each target until one is there.
-Look look_at(const Frame& frame, const std::string& name, const std::vector<Target>& targets,
-             std::vector<TargetView>& views) {
-  const auto gray = gray_of(frame.view);
-  const ByteView image{gray.data(), frame.view.width(), frame.view.height(), frame.view.width()};
-  Look look{name, {}, {}};
-  for (const Target& target : targets) {
-    TargetSearch search = find_target(image, target);
-    if (search.view) {
-      look.view = views.size();
-      look.reason.clear();
-      views.push_back(std::move(*search.view));
-      return look;
-    }
-    look.reason += fmt::format("{}no {}: {}", look.reason.empty() ? "" : "; ", to_text(target), search.reason);
-  }
-  return look;
-}
-
-Looks look_at_all(const std::vector<std::string>& locations, const std::vector<Target>& targets) {
-  Looks out;
-  for (const std::string& location : locations) {
-    FrameSource source = open_source({.location = location, .images_range = ColorRange::full});
-    while (const auto frame = source.next()) {
-      const bool is_alone = frame->image.empty() || !fs::is_directory(location);
-      const std::string name = is_alone ? location : (fs::path(location) / frame->image).string();
-      if (out.looks.empty()) out.size = {frame->view.width(), frame->view.height()};
-      if (frame->view.width() != out.size.width || frame->view.height() != out.size.height)
-        throw Error(name, fmt::format("is {} x {}, must be {} x {} like the images before", frame->view.width(),
-                                      frame->view.height(), out.size.width, out.size.height));
-      if (out.looks.size() == kMostImages)
-        throw Error(name, fmt::format("is one image too many, must be at most {}", kMostImages));
-      out.looks.push_back(look_at(*frame, name, targets, out.views));
-    }
-  }
-  return out;
-}
 
 void print_views(const Looks& looks, const Intrinsics& result) {
   fmt::print("\n{:32}{:20}{:>8}{:>12}{:>10}\n", "image", "target", "points", "tilt [deg]", "RMS [px]");
@@ -138,21 +72,15 @@ void print_result(const Intrinsics& result) {
 }
 
 void write_report(const std::string& folder, const Intrinsics& result) {
-  std::error_code failed;
-  fs::create_directories(folder, failed);
-  if (failed) throw Error(folder, "cannot be made: " + failed.message());
   CalibrationDrawing drawing;
   drawing.width = result.camera.width;
   drawing.height = result.camera.height;
   drawing.cell_columns = result.coverage.columns;
   drawing.cell_rows = result.coverage.rows;
   drawing.cell_points = result.coverage.points;
-  for (const ViewResult& view : result.views)
-    if (view.rejected.empty())
-      for (const PointResidual& point : view.points) drawing.points.push_back({point.seen, point.residual, point.used});
+  drawing.points = drawn_points(result.views);
   drawing.title = fmt::format("{}: {}", result.camera.name, distortion_name(result.camera.distortion));
-  Picture picture = draw_calibration(drawing);
-  write_png_rgb(fs::path(folder) / "residuals.png", {picture.width, picture.height, std::move(picture.pixels)});
+  write_residuals(folder, drawing);
 }
 
 int intrinsics_command(const IntrinsicsArguments& arguments) {
@@ -170,13 +98,11 @@ int intrinsics_command(const IntrinsicsArguments& arguments) {
                                         error.what() + "); --no-keep-mount replaces it");
     }
   }
-  if (const fs::path folder = fs::path(arguments.output).parent_path(); !folder.empty() && !fs::is_directory(folder))
-    throw Error(arguments.output, "cannot be created: there is no folder " + folder.string());
+  check_folder_of(arguments.output);
 
   const Looks looks = look_at_all(arguments.images, targets);
   if (!arguments.quiet) fmt::print("{} of {} images show a target\n", looks.views.size(), looks.looks.size());
-  if (looks.views.empty())
-    throw Error(looks.looks.front().image, "shows no target, like all images: " + looks.looks.front().reason);
+  check_any_target(looks);
   Intrinsics result = calibrate_intrinsics(looks.size, looks.views, arguments.options);
   result.camera.name = arguments.name.empty() ? fs::path(arguments.output).stem().string() : arguments.name;
   if (!arguments.quiet) {
@@ -214,9 +140,6 @@ int target_command(const TargetArguments& arguments) {
   write_atomically(arguments.output, target_sheet(sheet, extension == ".svg" ? SheetFormat::svg : SheetFormat::pdf));
   return 0;
 }
-
-const std::string kTargetHelp =
-    "dots:COLUMNSxROWS:PITCH:RADIUS or checker:COLUMNSxROWS:PITCH (inner corners), in metres";
 
 Command add_intrinsics(CLI::App& calibrate) {
   auto* command = calibrate.add_subcommand("intrinsics", "lens and sensor from images of targets");
@@ -282,8 +205,12 @@ Command add_target(CLI::App& calibrate) {
 Command add_calibrate(CLI::App& program) {
   auto* calibrate = program.add_subcommand("calibrate", "measure a camera, or make what is needed for it");
   calibrate->require_subcommand(1);
-  const Command intrinsics = add_intrinsics(*calibrate), target = add_target(*calibrate);
-  return [=] { return calibrate->got_subcommand("intrinsics") ? intrinsics() : target(); };
+  const Command intrinsics = add_intrinsics(*calibrate), mount = add_calibrate_mount(*calibrate),
+                target = add_target(*calibrate);
+  return [=] {
+    if (calibrate->got_subcommand("intrinsics")) return intrinsics();
+    return calibrate->got_subcommand("mount") ? mount() : target();
+  };
 }
 
 }  // namespace tassilo

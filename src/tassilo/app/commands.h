@@ -23,6 +23,7 @@ Command add_run(CLI::App& program);
 Command add_serve(CLI::App& program);
 Command add_train_colors(CLI::App& train);
 Command add_calibrate(CLI::App& program);
+Command add_calibrate_mount(CLI::App& calibrate);
 Command add_eval(CLI::App& program);
 Command add_compare(CLI::App& program);
 Command add_info(CLI::App& program);

@@ -4,7 +4,9 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 
+#include "tassilo/app/frame_bytes.h"
 #include "tassilo/app/recording_api.h"
+#include "tassilo/app/training_requests.h"
 #include "tassilo/base/error.h"
 #include "tassilo/files/jpeg.h"
 #include "tassilo/files/json.h"
@@ -18,6 +20,8 @@ using nlohmann::json;
 
 constexpr const char* kScene = "scene";
 constexpr const char* kPicture = "picture";
+constexpr const char* kFrame = "frame";
+constexpr std::size_t kLastFrames = 8;  ///< A browser asks for one of them that it has just shown.
 
 std::string stages_json(const Configuration& configuration, const VisionChanges& changes) {
   const VisionOptions& options = configuration.setup.vision.options;
@@ -99,13 +103,14 @@ void apply_changes(RobotSetup& setup, const VisionChanges& changes) {
   setup.at_work = std::move(settings);
 }
 
-LiveView::LiveView(const WebOptions& options, std::string robot_file, Recorder* recorder)
+LiveView::LiveView(const WebOptions& options, std::string robot_file, std::filesystem::path samples, Recorder* recorder)
     : robot_file_(std::move(robot_file)),
+      samples_(std::move(samples)),
       recorder_(recorder),
       server_(
           [&] {
             WebOptions with_channels = options;
-            with_channels.channels = {kScene, kPicture};
+            with_channels.channels = {kScene, kPicture, kFrame};
             return with_channels;
           }(),
           [this](const WebRequest& request) { return answer(request); }),
@@ -117,15 +122,17 @@ LiveView::~LiveView() {
     ending_ = true;
   }
   wanted_.notify_all();
+  shown_.notify_all();
   painter_.join();
 }
 
-void LiveView::begin(const std::string& source_name, const std::string& source_description, int every,
+void LiveView::begin(const std::string& source_name, const std::string& source_description, int every, ColorRange range,
                      std::shared_ptr<const Configuration> now, Load load) {
   const std::lock_guard lock(mutex_);
   seen_.source_name = source_name;
   seen_.source_description = source_description;
   seen_.every = every;
+  range_ = range;
   now_ = std::move(now);
   load_ = std::move(load);
 }
@@ -134,7 +141,8 @@ void LiveView::show(const Frame& frame, const Scene& scene, const VisionWorkspac
                     const std::shared_ptr<const Configuration>& configuration) {
   if (server_.listeners(kScene) > 0)
     server_.publish(kScene, std::make_shared<const std::string>(to_json_line(scene)), WebServer::Message::text);
-  const bool is_looked_at = server_.listeners(kPicture) > 0;
+  const bool is_picture_wanted = server_.listeners(kPicture) > 0;
+  const bool has_frame_listeners = server_.listeners(kFrame) > 0;
   const std::lock_guard lock(mutex_);
   // The rate of the last second or so.
   constexpr double share = 0.05;
@@ -146,9 +154,10 @@ void LiveView::show(const Frame& frame, const Scene& scene, const VisionWorkspac
   seen_.frame = scene.frame;
   seen_.t = scene.t;
   ++seen_.frames;
-  now_ = configuration;
-  if (!is_looked_at || drawing_) return;
-  snapshot_ = {frame, scene, workspace.surface, configuration};
+  if (!chosen_) now_ = configuration;  // what was chosen meanwhile counts already
+  if (drawing_ || !(is_picture_wanted || has_frame_listeners || is_frame_wanted_)) return;
+  snapshot_ = {frame, {}};
+  if (is_picture_wanted) snapshot_->scenery = {scene, workspace.surface, configuration};
   wanted_.notify_one();
 }
 
@@ -203,7 +212,7 @@ void LiveView::draw_pictures() {
     }
     std::string fault;
     try {
-      server_.publish(kPicture, std::make_shared<const std::string>(picture_of(snapshot)), WebServer::Message::binary);
+      publish(snapshot);
     } catch (const std::exception& error) {  // the vision goes on without a picture
       fault = error.what();
     }
@@ -212,15 +221,88 @@ void LiveView::draw_pictures() {
   }
 }
 
-std::string LiveView::picture_of(const Snapshot& snapshot) {
+void LiveView::publish(const Snapshot& snapshot) {
+  bool is_frame_wanted = server_.listeners(kFrame) > 0;
+  {
+    const std::lock_guard lock(mutex_);
+    is_frame_wanted |= is_frame_wanted_;
+  }
+  if (is_frame_wanted) {
+    const auto bytes = std::make_shared<const std::string>(frame_bytes(snapshot.frame));
+    {
+      const std::lock_guard lock(mutex_);
+      last_frames_.push_back(bytes);
+      if (last_frames_.size() > kLastFrames) last_frames_.pop_front();
+      is_frame_wanted_ = false;
+    }
+    shown_.notify_all();
+    server_.publish(kFrame, bytes, WebServer::Message::binary);
+  }
+  if (snapshot.scenery)
+    server_.publish(kPicture, std::make_shared<const std::string>(picture_of(snapshot.frame, *snapshot.scenery)),
+                    WebServer::Message::binary);
+}
+
+std::string LiveView::picture_of(const Frame& frame, const Scenery& scenery) {
   OverlayOptions options;
-  const Optics* const optics = snapshot.configuration->vision.optics();
+  const Optics* const optics = scenery.configuration->vision.optics();
   options.camera = optics != nullptr ? &optics->camera : nullptr;
-  options.surface = &snapshot.surface;
-  const Picture picture = draw_overlay(snapshot.frame.view, snapshot.frame.range, snapshot.scene, options);
+  options.surface = &scenery.surface;
+  const Picture picture = draw_overlay(frame.view, frame.range, scenery.scene, options);
   constexpr int quality = 80;
   return encode_jpeg(picture.pixels, picture.width, picture.height, quality,
-                     "frame " + std::to_string(snapshot.scene.frame));
+                     "frame " + std::to_string(scenery.scene.frame));
+}
+
+/// That was sent a moment ago, or the next one; null when none comes.
+std::shared_ptr<const std::string> LiveView::shown_frame(std::optional<std::int64_t> frame) {
+  constexpr auto patience = std::chrono::seconds(2);
+  std::unique_lock lock(mutex_);
+  if (frame)
+    for (const auto& bytes : last_frames_)
+      if (frame_of_bytes(bytes).index == *frame) return bytes;
+  is_frame_wanted_ = true;
+  if (!shown_.wait_for(lock, patience, [&] { return ending_ || !is_frame_wanted_; }) || ending_) {
+    is_frame_wanted_ = false;
+    return nullptr;
+  }
+  return last_frames_.back();
+}
+
+void LiveView::take_over_files() {
+  const std::lock_guard loading(loading_);
+  Load load;
+  {
+    const std::lock_guard lock(mutex_);
+    load = load_;
+  }
+  if (!load) return;
+  auto configuration = load(changes());
+  const std::lock_guard lock(mutex_);
+  now_ = chosen_ = std::move(configuration);
+}
+
+WebResponse LiveView::train(const WebRequest& request) {
+  std::shared_ptr<const Configuration> now;
+  std::optional<ColorRange> range;
+  {
+    const std::lock_guard lock(mutex_);
+    now = now_;
+    range = range_;
+  }
+  if (!now || !range) return refusal(503, "the source is not open yet");
+  if (!training_) {
+    const auto colors = std::ranges::find(now->setup.read, std::string(kColorsRole), &NamedFile::role);
+    training_ = std::make_unique<TrainingSession>(
+        training_files(colors != now->setup.read.end() ? colors->path : "", samples_), *range);
+  }
+  return answer_training(
+      *training_, request,
+      {[this] {
+         const std::lock_guard lock(mutex_);
+         return now_->setup.vision.colors;
+       },
+       [this](std::optional<std::int64_t> frame) { return shown_frame(frame); }, [this] { take_over_files(); }});
 }
 
 std::string LiveView::state_json() const {
@@ -261,10 +343,12 @@ WebResponse LiveView::answer(const WebRequest& request) {
     if (!now_) return refusal(503, "the source is not open yet");
     return {200, "application/json", stages_json(*now_, changes_)};
   }
+  if (request.path == "/api/training" || request.path.starts_with("/api/training/")) return train(request);
   if (request.path == "/")
-    return refusal(
-        404,
-        "the pages are not installed; /api/state, /api/stages, /api/recording, /ws/scene and /ws/picture are here");
+    return refusal(404,
+                   "the pages are not installed; /api/state, /api/stages, /api/training, /api/recording, /ws/scene, "
+                   "/ws/picture and "
+                   "/ws/frame are here");
   return refusal(404, "there is nothing at " + request.path);
 }
 

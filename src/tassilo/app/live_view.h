@@ -3,6 +3,8 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <deque>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
@@ -14,6 +16,7 @@
 
 #include "tassilo/app/configuration_watch.h"
 #include "tassilo/app/recent_median.h"
+#include "tassilo/app/training_session.h"
 #include "tassilo/surface/surface.h"
 #include "tassilo/web/server.h"
 
@@ -40,17 +43,19 @@ class LiveView {
   using Load = std::function<std::shared_ptr<const Configuration>(const VisionChanges&)>;
 
   /// Serves at once. Throws Error when it cannot.
+  /// samples   file of the color training; empty: beside the color table
   /// recorder   what the page's button begins and ends
-  LiveView(const WebOptions& options, std::string robot_file, Recorder* recorder);
+  LiveView(const WebOptions& options, std::string robot_file, std::filesystem::path samples, Recorder* recorder);
   ~LiveView();
   LiveView(const LiveView&) = delete;
   LiveView& operator=(const LiveView&) = delete;
 
   std::string url() const { return server_.url(); }
 
-  /// A source is open: from now on stages can be changed.
+  /// A source is open: from now on stages can be changed, and colors trained.
   /// every   of so many frames one is seen
-  void begin(const std::string& source_name, const std::string& source_description, int every,
+  /// range   of the source's frames
+  void begin(const std::string& source_name, const std::string& source_description, int every, ColorRange range,
              std::shared_ptr<const Configuration> now, Load load);
   /// One frame was seen. Does not wait.
   void show(const Frame& frame, const Scene& scene, const VisionWorkspace& workspace,
@@ -71,11 +76,14 @@ class LiveView {
 
  private:
   /// All a picture is drawn from.
-  struct Snapshot {
-    Frame frame;
+  struct Scenery {
     Scene scene;
     Surface surface;
     std::shared_ptr<const Configuration> configuration;
+  };
+  struct Snapshot {
+    Frame frame;
+    std::optional<Scenery> scenery;  ///< Where the picture is wanted.
   };
   struct Seen {
     std::string source_name, source_description;
@@ -91,15 +99,22 @@ class LiveView {
 
   WebResponse answer(const WebRequest& request);
   WebResponse change_stages(const std::string& body);
+  WebResponse train(const WebRequest& request);
+  void take_over_files();
+  std::shared_ptr<const std::string> shown_frame(std::optional<std::int64_t> frame);
   std::string state_json() const;
   void draw_pictures();
-  static std::string picture_of(const Snapshot& snapshot);
+  void publish(const Snapshot& snapshot);
+  static std::string picture_of(const Frame& frame, const Scenery& scenery);
 
   const std::string robot_file_;
+  const std::filesystem::path samples_;
+  std::optional<ColorRange> range_;            ///< Once a source is open.
+  std::unique_ptr<TrainingSession> training_;  ///< Since it was first asked for; used by who answers requests.
   Recorder* const recorder_;
   std::mutex loading_;        ///< Held while a configuration is loaded; before the other one.
   mutable std::mutex mutex_;  ///< Guards all down to the server.
-  std::condition_variable wanted_;
+  std::condition_variable wanted_, shown_;
   Seen seen_;
   mutable RecentMedian latency_ms_;
   Load load_;
@@ -107,6 +122,8 @@ class LiveView {
   VisionChanges changes_;
   std::optional<Snapshot> snapshot_;
   bool drawing_ = false, ending_ = false;
+  bool is_frame_wanted_ = false;                                ///< By a request, though nobody listens to frames.
+  std::deque<std::shared_ptr<const std::string>> last_frames_;  ///< That were sent; see frame_bytes.
 
   WebServer server_;
   std::thread painter_;

@@ -57,8 +57,8 @@ RobotSetup read_robot_setup(const std::string& robot_file, const std::string& co
                                 ? colors
                                 : named_file(robot_file, "colors", *robot.colors,
                                              "; `tassilo train colors` makes one, --colors FILE takes another");
-  setup.read.push_back({"color table", table});
-  setup.read.push_back({"color table", fs::path(table).replace_extension(".png").string()});
+  setup.read.push_back({kColorsRole, table});
+  setup.read.push_back({"PNG of the color table", table_paths(table).now.string()});
   setup.vision.colors = read_colors(table).table;
 
   if (robot.camera) {

@@ -13,6 +13,9 @@
 
 namespace tassilo {
 
+/// The role of a color table among the files that were read.
+inline constexpr const char* kColorsRole = "color table";
+
 /// What a robot sees with, and the files that said so.
 struct RobotSetup {
   VisionSetup vision;

@@ -135,7 +135,8 @@ class Run {
         // One load after the other: what is chosen in a browser meanwhile is not lost by an older one.
         return live_ != nullptr ? live_->load_with_changes(load_checked) : load_checked({});
       });
-    if (live_ != nullptr) live_->begin(name(), info_.description, arguments_.every, configuration_, load_checked);
+    if (live_ != nullptr)
+      live_->begin(name(), info_.description, arguments_.every, info_.range, configuration_, load_checked);
 
     std::optional<Error> damage;
     const auto begin = Clock::now();

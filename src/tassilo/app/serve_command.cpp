@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 struct ServeArguments {
   RunArguments run;
   WebOptions web;
-  std::string pages;
+  std::string pages, samples;
   std::string recordings = "recordings";
 };
 
@@ -47,7 +47,7 @@ int serve(const ServeArguments& arguments) {
   // Who can reach it from elsewhere must have been told.
   if (!is_loopback(web.address) && web.token.empty()) web.token = new_token();
   Recorder recorder(arguments.recordings, false);
-  LiveView live(web, arguments.run.robot, &recorder);
+  LiveView live(web, arguments.run.robot, arguments.samples, &recorder);
   if (!arguments.run.quiet) {
     fmt::print("{} {} {}{}; Ctrl-C ends\n", web.pages.empty() ? "serving at" : "open", live.url(),
                web.pages.empty() ? "for programs" : "in a browser",
@@ -83,6 +83,8 @@ Command add_serve(CLI::App& program) {
             std::string::npos;
         return is_plain && token.size() >= least ? "" : "must be 16 or more of a-z, A-Z, 0-9, - and _";
       });
+  command->add_option("--samples", arguments->samples,
+                      "samples.yaml of the color training, read and written (default: beside the color table)");
   command->add_option("--pages", arguments->pages, "folder with pages, instead of the installed ones")
       ->check(CLI::ExistingDirectory);
   command

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "tassilo/app/commands.h"
 #include "tassilo/app/training.h"
@@ -67,13 +68,25 @@ void print_quality(const ColorTable& table, const ColorQuality& quality, const s
   }
 }
 
+/// "green=40,180"
+void set_brightness(TrainingOptions& options, const std::string& text) {
+  const auto mark = text.find('=');
+  const auto color = color_class_from(text.substr(0, mark));
+  BrightnessInterval interval;
+  int length = 0;
+  if (mark == std::string::npos || !color || *color == ColorClass::no_color ||
+      std::sscanf(text.c_str() + mark, "=%3d,%3d%n", &interval.low, &interval.high, &length) != 2 ||
+      mark + static_cast<std::size_t>(length) != text.size())
+    throw CLI::ValidationError("--brightness", "is '" + text + "', must be CLASS=LOW,HIGH, as green=40,180");
+  options.brightness[static_cast<std::size_t>(class_index(*color))] = interval;
+}
+
 int train_colors_command(const TrainArguments& arguments) {
   const ColorRange images_range = arguments.range == "full" ? ColorRange::full : ColorRange::limited;
   const TrainingSet samples{arguments.samples, load_samples(arguments.samples, images_range, warn)};
   check_written_files(samples.loaded.files,
-                      std::array<NamedFile, 2>{
-                          {{"--output", arguments.output},
-                           {"the PNG of --output", fs::path(arguments.output).replace_extension(".png").string()}}});
+                      std::array<NamedFile, 2>{{{"--output", arguments.output},
+                                                {"the PNG of --output", table_paths(arguments.output).next.string()}}});
   std::optional<TrainingSet> held_out;
   if (!arguments.held_out.empty())
     held_out = {arguments.held_out, load_samples(arguments.held_out, images_range, warn)};
@@ -92,7 +105,7 @@ int train_colors_command(const TrainArguments& arguments) {
 Command add_train_colors(CLI::App& train) {
   auto* command = train.add_subcommand("colors", "train a color table from labelled regions of images");
   auto arguments = std::make_shared<TrainArguments>();
-  command->add_option("samples", arguments->samples, "samples.yaml: labelled rectangles, polygons and masks")
+  command->add_option("samples", arguments->samples, "samples.yaml: labelled rectangles, polygons, strokes and masks")
       ->required();
   command->add_option("-o,--output", arguments->output, "colors.yaml to write; its PNG is written beside it")
       ->required();
@@ -116,6 +129,14 @@ Command add_train_colors(CLI::App& train) {
   command->add_option("--black-reach", options.black_reach, "share of the gray between black and white that is black")
       ->capture_default_str();
   command->add_flag("-q,--quiet", arguments->quiet, "print nothing but warnings and errors");
+  command
+      ->add_option_function<std::vector<std::string>>(
+          "--brightness",
+          [arguments](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) set_brightness(arguments->options, text);
+          },
+          "brightness of a class instead of the trained one, as green=40,180; may be given for several classes")
+      ->expected(1, -1);
   command->callback([arguments] {
     try {
       arguments->options.check();

@@ -36,22 +36,6 @@ auto read_at(const std::string& place, Read read) {
   }
 }
 
-Region region_of(const TrainingSample& sample, const FrameView& frame, const std::string& place) {
-  if (const auto* box = std::get_if<PixelBox>(&sample.shape)) return Region::from_box(*box);
-  if (const auto* polygon = std::get_if<std::vector<PixelPoint>>(&sample.shape))
-    return region_from_polygon(*polygon, {-frame.width(), -frame.height(), std::min(2 * frame.width(), kMaxCoordinate),
-                                          std::min(2 * frame.height(), kMaxCoordinate)});
-  const auto& mask = std::get<SampleMask>(sample.shape);
-  const GrayImage pixels = read_at(place, [&] { return read_png_gray(mask.path); });
-  if (pixels.width != frame.width() || pixels.height != frame.height())
-    throw Error(place, fmt::format("mask {} is {}x{}, its image is {}x{}", mask.path.string(), pixels.width,
-                                   pixels.height, frame.width(), frame.height()));
-  const Region region = region_where(ByteView{pixels.pixels.data(), pixels.width, pixels.height, pixels.width},
-                                     [&](int value) { return value == mask.value; });
-  // The rim of a mask is where two colors mix.
-  return erosion(region, rectangle(3, 3));
-}
-
 /// Warns of regions of different classes that share pixels: at least one of them was drawn wrong.
 void warn_of_overlap(const std::vector<std::pair<const TrainingSample*, Region>>& drawn, const std::string& file,
                      const Warn& warn) {
@@ -100,6 +84,25 @@ std::string today() {
 
 }  // namespace
 
+Region sample_region(const SampleShape& shape, const FrameView& frame, const std::string& place) {
+  // What is drawn beyond the image is counted for a warning, but not without end.
+  const PixelBox around{-frame.width(), -frame.height(), std::min(2 * frame.width(), kMaxCoordinate),
+                        std::min(2 * frame.height(), kMaxCoordinate)};
+  if (const auto* box = std::get_if<PixelBox>(&shape)) return Region::from_box(*box);
+  if (const auto* polygon = std::get_if<std::vector<PixelPoint>>(&shape)) return region_from_polygon(*polygon, around);
+  if (const auto* stroke = std::get_if<SampleStroke>(&shape))
+    return region_from_stroke(stroke->way, stroke->radius, around);
+  const auto& mask = std::get<SampleMask>(shape);
+  const GrayImage pixels = read_at(place, [&] { return read_png_gray(mask.path); });
+  if (pixels.width != frame.width() || pixels.height != frame.height())
+    throw Error(place, fmt::format("mask {} is {}x{}, its image is {}x{}", mask.path.string(), pixels.width,
+                                   pixels.height, frame.width(), frame.height()));
+  const Region region = region_where(ByteView{pixels.pixels.data(), pixels.width, pixels.height, pixels.width},
+                                     [&](int value) { return value == mask.value; });
+  // The rim of a mask is where two colors mix.
+  return erosion(region, rectangle(3, 3));
+}
+
 LoadedSamples load_samples(const std::string& file, ColorRange images_range, const Warn& warn) {
   const std::vector<TrainingSample> list = read_samples(file);
   if (list.empty()) throw Error(file, "holds no samples, must hold at least one");
@@ -132,7 +135,7 @@ LoadedSamples load_samples(const std::string& file, ColorRange images_range, con
       for (const TrainingSample& sample : list) {
         if (sample.image != image || sample.frame != indices[i]) continue;
         const std::string place = fmt::format("{}:{}", file, sample.line);
-        Region region = region_of(sample, frame.view, place);
+        Region region = sample_region(sample.shape, frame.view, place);
         const auto whole = area(region);
         std::vector<YuvPixel> pixels = pixels_of(frame.view, region);
         if (pixels.empty()) {
@@ -187,6 +190,11 @@ TrainedColors train_colors_file(const TrainingSet& set, const TrainingSet* held_
                        : loaded.images > 1 ? "cross-validated: on images held out in turn"
                                            : "cross-validated: on samples of one image held out in turn";
   }
+  for (const TrainingNumber& number : training_numbers())
+    if (number.of(options) != number.of({})) provenance.options[std::string(number.key)] = number.of(options);
+  for (const ColorClass color : kColorClasses)
+    if (const auto& interval = options.brightness[static_cast<std::size_t>(class_index(color))])
+      provenance.brightness[color] = *interval;
   for (const ColorClass color : kColorClasses)
     if (trained.quality.pixels(color) > 0)
       provenance.quality[color] = {trained.quality.precision(color), trained.quality.recall(color)};

@@ -9,6 +9,8 @@
 #include "tassilo/color/quality.h"
 #include "tassilo/color/train.h"
 #include "tassilo/files/colors_file.h"
+#include "tassilo/files/samples_file.h"
+#include "tassilo/image/frame.h"
 
 namespace tassilo {
 
@@ -22,6 +24,10 @@ struct LoadedSamples {
   std::vector<NamedFile> files;     ///< All that were read, the list of samples among them.
   std::optional<ColorRange> range;  ///< Nothing when there is no sample.
 };
+
+/// The pixels that a shape means in an image of this size; what is far outside of it is cut. The rim of a mask, where
+/// two colors mix, is left out. Throws Error(place, ..) when a mask cannot be read or has another size.
+Region sample_region(const SampleShape& shape, const FrameView& frame, const std::string& place);
 
 /// Reads a samples file and the images it names; RGB images become BT.601 in `images_range`. Throws Error with the
 /// place in the file where a sample or an image is wrong, and when it holds no samples.

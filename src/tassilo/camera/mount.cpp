@@ -1,6 +1,8 @@
 #include "tassilo/camera/mount.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -70,6 +72,25 @@ std::optional<FloorPoint> MountedCamera::floor_along(RobotPoint direction, doubl
   const FloorPoint from_foot{reach * direction.x, reach * direction.y};
   if (!(reach > 0 && dot(from_foot, from_foot) <= max_range * max_range)) return std::nullopt;
   return FloorPoint{mount_.x, mount_.y} + from_foot;
+}
+
+std::optional<FloorPoint> floor_point_moved(const CameraMount& from, const CameraMount& to, FloorPoint at) {
+  const MountedCamera before({}, from), after({}, to);
+  const RobotPoint ray = RobotPoint{at.x, at.y, 0} - before.center();
+  constexpr double furthest = 1000;  // [m] as good as level
+  return after.floor_along(after.robot_from_optical(before.optical_from_robot(ray)), 0, furthest);
+}
+
+double floor_shift(const CameraMount& from, const CameraMount& to, double range) {
+  double most = 0;
+  for (const double side : {-1., 0., 1.}) {
+    const double bearing = from.yaw + side * std::numbers::pi / 6;
+    const FloorPoint at{from.x + range * std::cos(bearing), from.y + range * std::sin(bearing)};
+    const auto moved = floor_point_moved(from, to, at);
+    if (!moved) return std::numeric_limits<double>::infinity();
+    most = std::max(most, distance(at, *moved));
+  }
+  return most;
 }
 
 }  // namespace tassilo

@@ -52,4 +52,11 @@ class MountedCamera {
   double r_[3][3];  ///< robot_from_body
 };
 
+/// Where a camera has the place of the floor that shows where `at` showed, after its mount went from `from` to `to`;
+/// nothing where no floor shows there any more. The lens does not matter. [m]
+std::optional<FloorPoint> floor_point_moved(const CameraMount& from, const CameraMount& to, FloorPoint at);
+/// What a change of the mount does to a robot: how far places of the floor at `range` from the camera's foot, ahead of
+/// it and 30 degrees to both sides, move in its eyes. The farthest move; infinite where one is lost from the floor. [m]
+double floor_shift(const CameraMount& from, const CameraMount& to, double range = 3);
+
 }  // namespace tassilo

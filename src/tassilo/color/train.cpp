@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <iterator>
 #include <numeric>
 #include <optional>
 #include <sstream>
@@ -103,7 +103,7 @@ Region with_shades(const Region& cells, const TrainingOptions& options) {
 }
 
 struct ClassModel {
-  Region shades;                ///< The cluster with its shades.
+  UvPlane<double> to_shades;    ///< Distance to the cluster with its shades.
   UvPlane<double> nearness;     ///< Distance by which classes compete for a cell.
   double dark = 0, bright = 0;  ///< Brightness of the samples without outliers.
 };
@@ -127,10 +127,11 @@ std::optional<ClassModel> model_of(ColorClass color, const std::vector<YuvPixel>
   ClassModel model;
   model.dark = quantile(brightness, options.brightness_outlier_share);
   model.bright = quantile(brightness, 1 - options.brightness_outlier_share);
-  model.shades = is_gray(color) || color == ColorClass::no_color ? cells : with_shades(cells, options);
   // A cell of the cluster itself is better evidence than one of its shades: a quarter of the way to the cluster counts.
   const UvPlane<double> to_cells = distance_to(cells);
-  model.nearness = distance_to(model.shades);
+  model.to_shades =
+      is_gray(color) || color == ColorClass::no_color ? to_cells : distance_to(with_shades(cells, options));
+  model.nearness = model.to_shades;
   for (std::size_t i = 0; i < model.nearness.cells.size(); ++i) model.nearness.cells[i] += 0.25 * to_cells.cells[i];
   return model;
 }
@@ -151,45 +152,78 @@ std::vector<YuvPixel> pixels_of(const FrameView& frame, const Region& region) {
   return pixels;
 }
 
-void TrainingOptions::check() const {
-  const auto in = [](const char* name, double value, double low, double high) {
-    if (value >= low && value <= high) return;
-    std::ostringstream reason;
-    reason << "is " << value << ", must be in [" << low << ", " << high << "]";
-    throw Error(std::string("train.") + name, reason.str());
+std::span<const TrainingNumber> training_numbers() {
+  using T = TrainingOptions;
+  static constexpr std::array kNumbers{
+      TrainingNumber{"outlier_share", "1", 0, 0.2, "share of a class's pixels that may be wrong", &T::outlier_share},
+      TrainingNumber{"brightness_outlier_share", "1", 0, 0.2,
+                     "share of a class's pixels at either end of its brightness that are mixed or in deep shade",
+                     &T::brightness_outlier_share},
+      TrainingNumber{"min_cluster_share", "1", 0, 0.5,
+                     "a separate cluster with a smaller share of the pixels is a slip", &T::min_cluster_share},
+      TrainingNumber{"closing_px", "step", 1, 31, "closing of the UV cluster", nullptr, &T::closing_px},
+      TrainingNumber{"opening_px", "step", 1, 15, "opening of the UV cluster", nullptr, &T::opening_px},
+      TrainingNumber{"noise_margin", "step", 0, 20, "margin around the UV cluster", &T::noise_margin},
+      TrainingNumber{"darkest_shade", "1", 0.1, 1, "darkest shade relative to the samples", &T::darkest_shade},
+      TrainingNumber{"brightest_light", "1", 1, 2, "brightest light relative to the samples", &T::brightest_light},
+      TrainingNumber{"white_reach", "1", 0, 0.5, "share of the gray between black and white that is white",
+                     &T::white_reach},
+      TrainingNumber{"black_reach", "1", 0, 0.5, "share of the gray between black and white that is black",
+                     &T::black_reach},
   };
-  in("outlier_share", outlier_share, 0, 0.2);
-  in("brightness_outlier_share", brightness_outlier_share, 0, 0.2);
-  in("min_cluster_share", min_cluster_share, 0, 0.5);
-  in("closing_px", closing_px, 1, 31);
-  in("opening_px", opening_px, 1, 15);
-  in("noise_margin", noise_margin, 0, 20);
-  in("darkest_shade", darkest_shade, 0.1, 1);
-  in("brightest_light", brightest_light, 1, 2);
-  in("white_reach", white_reach, 0, 0.5);
-  in("black_reach", black_reach, 0, 0.5);
+  return kNumbers;
 }
 
-ColorTable train_colors(const std::vector<ColorSample>& samples, ColorRange range, const TrainingOptions& options) {
-  options.check();
-  std::array<std::vector<YuvPixel>, kColorClassCount + 1> pixels;
-  for (const ColorSample& sample : samples) {
-    auto& all = pixels[static_cast<std::size_t>(sample.color)];
-    all.insert(all.end(), sample.pixels.begin(), sample.pixels.end());
+void TrainingNumber::set(TrainingOptions& options, double value) const {
+  const bool is_in_range = value >= low && value <= high;
+  if (!is_in_range || (whole != nullptr && value != std::floor(value))) {
+    std::ostringstream reason;
+    reason << "is " << value << ", must be " << (is_in_range ? "a whole number " : "") << "in [" << low << ", " << high
+           << "]";
+    throw Error("train." + std::string(key), reason.str());
   }
-  std::array<std::optional<ClassModel>, kColorClassCount + 1> models;
-  for (std::size_t k = 0; k < models.size(); ++k) models[k] = model_of(static_cast<ColorClass>(k), pixels[k], options);
+  if (real != nullptr)
+    options.*real = value;
+  else
+    options.*whole = static_cast<int>(value);
+}
 
+void TrainingOptions::check() const {
+  TrainingOptions checked = *this;
+  for (const TrainingNumber& number : training_numbers()) number.set(checked, number.of(*this));
+  for (const ColorClass color : kColorClasses) {
+    const auto& interval = brightness[static_cast<std::size_t>(class_index(color))];
+    if (interval && !(0 <= interval->low && interval->low <= interval->high && interval->high <= 255))
+      throw Error("train.brightness." + std::string(to_string(color)), "is [" + std::to_string(interval->low) + ", " +
+                                                                           std::to_string(interval->high) +
+                                                                           "], must be [low, high] in 0..255");
+  }
+}
+
+namespace {
+
+using ClassModels = std::array<const ClassModel*, kColorClassCount + 1>;  // by label; null: no samples
+
+/// What the models are, without what only says how they share the plane.
+TrainingOptions options_of_models(TrainingOptions options) {
+  const TrainingOptions standard;
+  options.noise_margin = standard.noise_margin;
+  options.white_reach = standard.white_reach;
+  options.black_reach = standard.black_reach;
+  options.brightness = standard.brightness;
+  return options;
+}
+
+ColorTable table_of(const ClassModels& models, ColorRange range, const TrainingOptions& options) {
   ColorTable table;
   table.range = range;
   table.brightness.fill({1, 0});
   for (const ColorClass color : kColorClasses) {
     const auto& model = models[static_cast<std::size_t>(color)];
     if (!model) continue;
-    const UvPlane<double> to_shades = distance_to(model->shades);
     for (int v = 0; v < 256; ++v)
       for (int u = 0; u < 256; ++u) {
-        if (to_shades(u, v) > options.noise_margin) continue;
+        if (model->to_shades(u, v) > options.noise_margin) continue;
         const double own = model->nearness(u, v);
         const bool nearest = std::ranges::all_of(kColorClasses, [&](ColorClass other) {
           const auto& rival = models[static_cast<std::size_t>(other)];
@@ -220,7 +254,56 @@ ColorTable train_colors(const std::vector<ColorSample>& samples, ColorRange rang
     if (white && none->bright < white->dark)
       interval(ColorClass::white).low = static_cast<int>((white->dark + none->bright) / 2) + 1;
   }
+  for (std::size_t k = 0; k < table.brightness.size(); ++k)
+    if (options.brightness[k]) table.brightness[k] = *options.brightness[k];
   return table;
+}
+
+}  // namespace
+
+ColorTable train_colors(const std::vector<ColorSample>& samples, ColorRange range, const TrainingOptions& options) {
+  options.check();
+  std::array<std::vector<YuvPixel>, kColorClassCount + 1> pixels;
+  for (const ColorSample& sample : samples) {
+    auto& all = pixels[static_cast<std::size_t>(sample.color)];
+    all.insert(all.end(), sample.pixels.begin(), sample.pixels.end());
+  }
+  std::array<std::optional<ClassModel>, kColorClassCount + 1> models;
+  ClassModels found{};
+  for (std::size_t k = 0; k < models.size(); ++k) {
+    models[k] = model_of(static_cast<ColorClass>(k), pixels[k], options);
+    if (models[k]) found[k] = &*models[k];
+  }
+  return table_of(found, range, options);
+}
+
+struct IncrementalTraining::ClassState {
+  std::vector<std::shared_ptr<const ColorSample>> samples;
+  std::optional<ClassModel> model;
+};
+
+IncrementalTraining::IncrementalTraining() : classes_(kColorClassCount + 1) {}
+IncrementalTraining::~IncrementalTraining() = default;
+
+ColorTable IncrementalTraining::operator()(std::span<const std::shared_ptr<const ColorSample>> samples,
+                                           ColorRange range, const TrainingOptions& options) {
+  options.check();
+  const bool is_same_kind = options_of_models(options) == options_of_models(options_);
+  options_ = options;
+  ClassModels models{};
+  for (std::size_t k = 0; k < classes_.size(); ++k) {
+    const auto color = static_cast<ColorClass>(k);
+    std::vector<std::shared_ptr<const ColorSample>> own;
+    std::ranges::copy_if(samples, std::back_inserter(own), [&](const auto& one) { return one->color == color; });
+    ClassState& state = classes_[k];
+    if (!is_same_kind || own != state.samples) {
+      std::vector<YuvPixel> pixels;
+      for (const auto& sample : own) pixels.insert(pixels.end(), sample->pixels.begin(), sample->pixels.end());
+      state = {std::move(own), model_of(color, pixels, options)};
+    }
+    if (state.model) models[k] = &*state.model;
+  }
+  return table_of(models, range, options);
 }
 
 }  // namespace tassilo

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <random>
 
 #include "tassilo/base/error.h"
@@ -164,6 +165,63 @@ TEST(DistanceTo, EqualsBruteForce) {
         EXPECT_NEAR(distance(u, v), nearest, 1e-9);
       }
     }
+  }
+}
+
+TEST(TrainColors, BrightnessSetByHandIsTaken) {
+  std::mt19937 random(9);
+  const auto samples = samples_of_all(0.8, random);
+  TrainingOptions options;
+  options.brightness[static_cast<std::size_t>(class_index(ColorClass::green))] = {40, 80};
+  ColorTable expected = train_colors(samples, ColorRange::limited);
+  expected.brightness[static_cast<std::size_t>(class_index(ColorClass::green))] = {40, 80};
+  EXPECT_EQ(train_colors(samples, ColorRange::limited, options), expected);
+}
+
+TEST(TrainingOptions, NumbersKnowTheirRange) {
+  for (const TrainingNumber& number : training_numbers()) {
+    TrainingOptions options;
+    EXPECT_NO_THROW(number.set(options, number.low));
+    EXPECT_EQ(number.of(options), number.low) << number.key;
+    EXPECT_THROW(number.set(options, number.high + 0.01), Error) << number.key;
+    EXPECT_THROW(number.set(options, std::nan("")), Error) << number.key;
+    EXPECT_EQ(number.of(options), number.low) << number.key;
+    if (number.whole == nullptr) continue;
+    EXPECT_THROW(number.set(options, number.low + 0.5), Error) << number.key;
+  }
+  TrainingOptions options;
+  options.brightness[0] = {9, 8};
+  EXPECT_THROW(options.check(), Error);
+}
+
+// Fast and plain are the same, whatever is drawn, removed or turned in whatever order.
+TEST(IncrementalTraining, EqualsTrainingAnew) {
+  std::mt19937 random(12);
+  IncrementalTraining train;
+  std::vector<std::shared_ptr<const ColorSample>> samples;
+  TrainingOptions options;
+  const auto number = [&](int count) { return static_cast<int>(random() % static_cast<unsigned>(count)); };
+  for (int step = 0; step < 40; ++step) {
+    switch (number(6)) {
+      case 0:
+        if (!samples.empty()) samples.erase(samples.begin() + number(static_cast<int>(samples.size())));
+        break;
+      case 1:
+        options.closing_px = 1 + 2 * number(4);
+        break;
+      case 2:
+        options.noise_margin = number(8);
+        options.brightness[static_cast<std::size_t>(number(8))] = {number(100), 100 + number(100)};
+        break;
+      default:
+        const Paint& paint = kPaints[number(6)];
+        samples.push_back(std::make_shared<ColorSample>(ColorSample{paint.color, 0, pixels(paint, 0.7, 400, random)}));
+        if (number(5) == 0)
+          samples.back() = std::make_shared<ColorSample>(ColorSample{ColorClass::no_color, 0, samples.back()->pixels});
+    }
+    std::vector<ColorSample> copies;
+    for (const auto& sample : samples) copies.push_back(*sample);
+    ASSERT_EQ(train(samples, ColorRange::limited, options), train_colors(copies, ColorRange::limited, options)) << step;
   }
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <sstream>
 
+#include "tassilo/base/error.h"
 #include "tassilo/files/atomic_file.h"
 #include "tassilo/files/internal/checked.h"
 #include "tassilo/files/internal/color_value.h"
@@ -29,17 +30,24 @@ void for_each_color(const Value& value, Read read) {
     if (const auto entry = map.find(to_string(color))) read(color, *entry);
 }
 
+BrightnessInterval interval_of(const Value& value) {
+  const auto ends = value.list(2, 2);
+  const BrightnessInterval interval{static_cast<int>(ends[0].integer(0, 255)),
+                                    static_cast<int>(ends[1].integer(0, 255))};
+  if (interval.low > interval.high)
+    value.fail("is [" + std::to_string(interval.low) + ", " + std::to_string(interval.high) + "], must be [low, high]");
+  return interval;
+}
+
+std::string interval_yaml(const BrightnessInterval& interval) {
+  const std::array<double, 2> ends{double(interval.low), double(interval.high)};
+  return yaml_numbers(ends);
+}
+
 void read_brightness(const Value& value, ColorTable& table) {
   table.brightness.fill(kNoBrightness);
-  for_each_color(value, [&](ColorClass color, const Value& entry) {
-    const auto ends = entry.list(2, 2);
-    BrightnessInterval& interval = table.brightness[index_of(color)];
-    interval.low = static_cast<int>(ends[0].integer(0, 255));
-    interval.high = static_cast<int>(ends[1].integer(0, 255));
-    if (interval.low > interval.high)
-      entry.fail("is [" + std::to_string(interval.low) + ", " + std::to_string(interval.high) +
-                 "], must be [low, high]");
-  });
+  for_each_color(value,
+                 [&](ColorClass color, const Value& entry) { table.brightness[index_of(color)] = interval_of(entry); });
 }
 
 void read_chroma(const Value& value, const fs::path& folder, ColorTable& table) {
@@ -68,11 +76,16 @@ void read_priority(const Value& value, ColorTable& table) {
 }
 
 Provenance provenance_of(const Value& value) {
-  const Map map = value.map({"samples", "date", "quality", "notes"});
+  const Map map = value.map({"samples", "date", "quality", "notes", "options", "brightness"});
   Provenance provenance;
   if (const auto samples = map.find("samples")) provenance.samples = samples->string();
   if (const auto date = map.find("date")) provenance.date = date->string();
   if (const auto notes = map.find("notes")) provenance.notes = notes->string();
+  if (const auto options = map.find("options"))
+    for (const auto& [name, option] : options->any_map().entries()) provenance.options[name] = option.number();
+  if (const auto brightness = map.find("brightness"))
+    for_each_color(*brightness,
+                   [&](ColorClass color, const Value& entry) { provenance.brightness[color] = interval_of(entry); });
   if (const auto quality = map.find("quality"))
     for_each_color(*quality, [&](ColorClass color, const Value& entry) {
       const Map numbers = entry.map({"precision", "recall"});
@@ -97,6 +110,12 @@ std::string provenance_yaml(const Provenance& provenance) {
   if (!provenance.samples.empty()) out << "  samples: " << yaml_text(provenance.samples) << "\n";
   if (!provenance.date.empty()) out << "  date: " << yaml_text(provenance.date) << "\n";
   if (!provenance.notes.empty()) out << "  notes: " << yaml_text(provenance.notes) << "\n";
+  if (!provenance.options.empty()) out << "  options:\n";
+  for (const auto& [name, value] : provenance.options)
+    out << "    " << yaml_text(name) << ": " << number_text(value) << "\n";
+  if (!provenance.brightness.empty()) out << "  brightness:\n";
+  for (const auto& [color, interval] : provenance.brightness)
+    out << "    " << to_string(color) << ": " << interval_yaml(interval) << "\n";
   out << "  quality:" << (provenance.quality.empty() ? " {}" : "") << "\n";
   for (const auto& [color, quality] : provenance.quality)
     out << "    " << to_string(color) << ": " << quality_yaml(quality) << "\n";
@@ -111,7 +130,7 @@ std::string colors_yaml(const ColorsFile& colors, const std::string& png_name) {
   for (const ColorClass color : kColorClasses) {
     const BrightnessInterval& interval = table.brightness[index_of(color)];
     if (interval.low > interval.high) continue;
-    out << "\n  " << to_string(color) << ": [" << interval.low << ", " << interval.high << "]";
+    out << "\n  " << to_string(color) << ": " << interval_yaml(interval);
     any = true;
   }
   out << (any ? "\n" : " {}\n");
@@ -143,6 +162,19 @@ ColorsFile colors_from_yaml(std::string_view text, const fs::path& file) {
   return colors_of(parse_yaml(text, file.string()), file);
 }
 
+TablePaths table_paths(const fs::path& file) {
+  const fs::path first = fs::path(file).replace_extension(".png");
+  TablePaths paths{{}, first};
+  std::error_code ignored;
+  if (!fs::exists(file, ignored)) return paths;
+  try {
+    paths.now = read_yaml(file).any_map().at("table").path(file.parent_path());
+  } catch (const Error&) {  // what cannot be read names nothing that must be kept
+  }
+  if (paths.now.lexically_normal() == first.lexically_normal()) paths.next = fs::path(file).replace_extension(".2.png");
+  return paths;
+}
+
 void write_colors(const fs::path& file, const ColorsFile& colors) {
   colors.table.check();
   // An empty interval holds no pixel, so its cells mean nothing and would be refused on reading.
@@ -153,7 +185,7 @@ void write_colors(const fs::path& file, const ColorsFile& colors) {
   }
   GrayImage image{256, 256, {colors.table.chroma.begin(), colors.table.chroma.end()}};
   for (std::uint8_t& bits : image.pixels) bits &= kept;
-  const fs::path png = fs::path(file).replace_extension(".png");
+  const fs::path png = table_paths(file).next;
   write_png_gray(png, image);
   write_atomically(file, colors_yaml(colors, png.filename().string()));
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -22,6 +23,8 @@ struct Provenance {
   std::string date;     ///< As written, 2026-11-22.
   std::map<ColorClass, ClassQuality> quality;
   std::string notes;
+  std::map<std::string, double, std::less<>> options;   ///< Of the training, by name, where not the default.
+  std::map<ColorClass, BrightnessInterval> brightness;  ///< Where it was set by hand. low <= high
   friend bool operator==(const Provenance&, const Provenance&) = default;
 };
 
@@ -38,8 +41,15 @@ ColorsFile read_colors(const std::filesystem::path& file);
 /// The same for a text in place of the content of `file`; the PNG is looked for beside `file`.
 ColorsFile colors_from_yaml(std::string_view text, const std::filesystem::path& file);
 
-/// Writes the table beside `file` as STEM.png, then `file`, each atomically. Whoever watches `file` finds the PNG
-/// complete. Reading gives the same table; all empty brightness intervals read back as one.
+/// Writes the table beside `file`, then `file`, each atomically. The PNG is STEM.png, or STEM.2.png when `file` now
+/// names the former: what is read in between, or after a power cut, is the old table or the new one as a whole.
+/// Reading gives the same table; all empty brightness intervals read back as one. Throws Error when it cannot.
 void write_colors(const std::filesystem::path& file, const ColorsFile& colors);
+/// The PNG that `file` names, empty when there is no such file or it cannot be read; and the one that write_colors
+/// would write.
+struct TablePaths {
+  std::filesystem::path now, next;
+};
+TablePaths table_paths(const std::filesystem::path& file);
 
 }  // namespace tassilo

@@ -29,7 +29,9 @@ ColorsFile random_colors(unsigned seed) {
         "../samples: 1.yaml",
         "2026-11-22",
         {{ColorClass::red, {0.98, 1.0 / 3}}, {ColorClass::white, {std::nullopt, 1.0}}, {ColorClass::black, {}}},
-        seed % 5 ? "" : "by hand, \"twice\"\nchecked"};
+        seed % 5 ? "" : "by hand, \"twice\"\nchecked",
+        {{"closing_px", 7}, {"noise_margin", 1.0 / 3}},
+        {{ColorClass::white, {150, 255}}, {ColorClass::blue, {0, 0}}}};
   return colors;
 }
 
@@ -40,6 +42,25 @@ TEST(ColorsFile, WrittenTablesReadBackEqual) {
     const ColorsFile colors = random_colors(seed);
     write_colors(folder / "colors_a.yaml", colors);
     EXPECT_TRUE(read_colors(folder / "colors_a.yaml") == colors);
+  }
+}
+
+// A power cut after the PNG, and before the file that names it, leaves the old table.
+TEST(ColorsFile, WritingLeavesTheTableThatIsNamed) {
+  const TestFolder folder;
+  const auto file = folder / "colors.yaml";
+  for (unsigned seed = 0; seed < 4; ++seed) {
+    const TablePaths paths = table_paths(file);
+    if (seed == 0) {
+      EXPECT_EQ(paths.next, folder / "colors.png");
+    } else {
+      const ColorsFile before = random_colors(seed - 1);
+      write_png_gray(paths.next, {256, 256, std::vector<std::uint8_t>(256 * 256)});
+      EXPECT_TRUE(read_colors(file) == before);
+    }
+    write_colors(file, random_colors(seed));
+    EXPECT_EQ(table_paths(file).now, paths.next);
+    EXPECT_TRUE(read_colors(file) == random_colors(seed));
   }
 }
 
@@ -73,7 +94,7 @@ TEST(ColorsFile, MalformedFilesAreRefused) {
   colors.table.brightness.fill({1, 0});
   colors.table.brightness[0] = {16, 60};
   std::ranges::reverse(colors.table.priority);
-  colors.trained_from = Provenance{"s.yaml", "2026-11-22", {{ColorClass::black, {0.5, 0.75}}}, ""};
+  colors.trained_from = Provenance{"s.yaml", "2026-11-22", {{ColorClass::black, {0.5, 0.75}}}, "", {}, {}};
   const auto file = folder / "colors.yaml";
   write_colors(file, colors);
   const std::string good = read_text(file, 10000);
@@ -101,7 +122,7 @@ TEST(ColorsFile, MalformedFilesAreRefused) {
       {"[black, white", "[white, white", "FILE:5:19: priority[1] is a second white, must name each class once"},
       {"[black, white", "[white", "FILE:5:11: priority has 7 values, must have 8"},
       {"recall: 0.75", "recall: 75", "FILE:10:37: trained_from.quality.black.recall is '75', must be >= 0 and <= 1"},
-      {"date:", "when:", "FILE:8:3: unknown key 'when', must be samples, date, quality or notes"},
+      {"date:", "when:", "FILE:8:3: unknown key 'when', must be samples, date, quality, notes, options or brightness"},
   };
   const auto message_with_paths = [&](std::string message) {
     if (message.starts_with("FILE")) message.replace(0, 4, file.string());

@@ -20,8 +20,15 @@ struct SampleMask {
   friend bool operator==(const SampleMask&, const SampleMask&) = default;
 };
 
-/// A box, the corners of a polygon (at least three), or a mask. May leave the image.
-using SampleShape = std::variant<PixelBox, std::vector<PixelPoint>, SampleMask>;
+/// The way of a round brush: pixels whose centre is at most `radius` from it.
+struct SampleStroke {
+  std::vector<PixelPoint> way;  ///< At least one point.
+  double radius = 0;            ///< [px], >= 0
+  friend bool operator==(const SampleStroke&, const SampleStroke&) = default;
+};
+
+/// A box, the corners of a polygon (at least three), a stroke, or a mask. May leave the image.
+using SampleShape = std::variant<PixelBox, std::vector<PixelPoint>, SampleStroke, SampleMask>;
 
 /// One labelled region of one image.
 struct TrainingSample {

@@ -19,11 +19,12 @@ const std::string kSamples = R"(# drawn by hand
   class: no_color
   mask: labels.png
   value: 3
+- {image: a/photo.png, class: white, stroke: [[3, 4], [-1.5, 7]], radius: 2.5}
 )";
 
 TEST(SamplesFile, ReadsAllShapes) {
   const auto samples = samples_from_yaml(kSamples, "data/samples.yaml");
-  ASSERT_EQ(samples.size(), 3u);
+  ASSERT_EQ(samples.size(), 4u);
   EXPECT_EQ(samples[0].image, "data/stills.mkv");
   EXPECT_EQ(samples[0].frame, 3);
   EXPECT_EQ(samples[0].color, ColorClass::green);
@@ -34,6 +35,7 @@ TEST(SamplesFile, ReadsAllShapes) {
   EXPECT_EQ(samples[2].color, ColorClass::no_color);
   EXPECT_EQ(samples[2].line, 4);
   EXPECT_EQ(std::get<SampleMask>(samples[2].shape), (SampleMask{"data/labels.png", 3}));
+  EXPECT_EQ(std::get<SampleStroke>(samples[3].shape), (SampleStroke{{{3, 4}, {-1.5, 7}}, 2.5}));
 }
 
 TEST(SamplesFile, WrittenSamplesReadBackEqualFromAnotherFolder) {
@@ -68,7 +70,7 @@ TEST(SamplesFile, MalformedFilesAreRefused) {
   struct Case {
     std::string from, to, message;
   };
-  const std::string keys = "image, frame, class, rectangle, polygon, mask or value";
+  const std::string keys = "image, frame, class, rectangle, polygon, stroke, radius, mask or value";
   const Case cases[] = {
       {"polygon:", "poligon:", "s:2:47: unknown key 'poligon', must be " + keys + "; did you mean polygon?"},
       {"frame: 3", "frame: -3", "s:2:30: [0].frame is '-3', must be >= 0"},
@@ -82,12 +84,16 @@ TEST(SamplesFile, MalformedFilesAreRefused) {
       {"[-1, 80, 112, 90]", "[-1, 80, -1, 90]",
        "s:3:47: [1].rectangle is empty, must be [x0, y0, x1, y1] with x0 < x1 and y0 < y1"},
       {"[-1, 80, 112, 90]", "[-1, 80, 11.5, 90]", "s:3:56: [1].rectangle[2] is '11.5', must be a whole number"},
-      {", rectangle: [-1, 80, 112, 90]", "", "s:3:3: [1] must have one of rectangle, polygon or mask"},
+      {", rectangle: [-1, 80, 112, 90]", "", "s:3:3: [1] must have one of rectangle, polygon, stroke or mask"},
       {"  mask: labels.png", "  rectangle: [1, 2, 3, 4]", "s:7:10: [2].value stands without a mask, must go with one"},
       {"  value: 3\n", "", "s:4:3: key '[2].value' is missing"},
       {"  value: 3\n", "  value: 256\n", "s:7:10: [2].value is '256', must be >= 0 and <= 255"},
       {"  value: 3\n", "  value: 3\n  polygon: [[1, 2], [3, 4], [5, 6]]\n",
-       "s:4:3: [2] must have one of rectangle, polygon or mask"},
+       "s:4:3: [2] must have one of rectangle, polygon, stroke or mask"},
+      {", radius: 2.5", "", "s:8:3: key '[3].radius' is missing"},
+      {"radius: 2.5", "radius: -1", "s:8:75: [3].radius is '-1', must be >= 0 and <= 1000"},
+      {"stroke: [[3, 4], [-1.5, 7]]", "rectangle: [1, 2, 3, 4]",
+       "s:8:71: [3].radius stands without a stroke, must go with one"},
   };
   for (const Case& c : cases)
     EXPECT_THAT(message_of([&] { samples_from_yaml(spoiled(kSamples, c.from, c.to), "s"); }),

@@ -54,4 +54,10 @@ std::vector<std::uint8_t> to_labels(std::span<const Region> regions, const Pixel
 /// source   own; the scan-line rule is that of common graphics interfaces (top-left rule).
 Region region_from_polygon(std::span<const PixelPoint> vertices, const PixelBox& window);
 
+/// Pixels of the window whose centres are at most `radius` from the open line through `way`, as a round brush paints
+/// it. One point: a disc; none: empty.
+/// way      finite, may lie anywhere [px]; radius >= 0 [px]; window within 16 bit
+/// cost     O(rows touched by each segment), own
+Region region_from_stroke(std::span<const PixelPoint> way, double radius, const PixelBox& window);
+
 }  // namespace tassilo

@@ -126,5 +126,40 @@ TEST(Polygon, FarOutsideOrWithoutAreaIsHarmless) {
   EXPECT_DEATH(region_from_polygon(std::vector<PixelPoint>{{1, 1}, {std::nan(""), 8}, {4, 4}}, window), "finite");
 }
 
+double distance_to_segment(PixelPoint p, PixelPoint a, PixelPoint b) {
+  const PixelPoint along = b - a;
+  const double square = dot(along, along);
+  const double share = square > 0 ? std::clamp(dot(p - a, along) / square, 0.0, 1.0) : 0;
+  return distance(p, a + share * along);
+}
+
+// What is within rounding of the brush's rim may be on either side.
+TEST(Raster, StrokesHoldWhatIsNearTheirWay) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> place(-8, 40), brush(0, 9);
+  const PixelBox window{-2, 1, 31, 27};
+  for (int trial = 0; trial < 200; ++trial) {
+    std::vector<PixelPoint> way(1 + random() % 4);
+    for (PixelPoint& point : way) point = {place(random), place(random)};
+    if (trial % 3 == 0)
+      for (PixelPoint& point : way) point = {std::round(point.x), std::round(point.y)};
+    if (trial % 5 == 0) way.push_back(way.back());
+    const double radius = trial % 4 == 0 ? std::round(brush(random)) : brush(random);
+    const Region region = region_from_stroke(way, radius, window);
+    for (int r = -10; r < 40; ++r)
+      for (int c = -10; c < 45; ++c) {
+        const PixelPoint pixel{double(c), double(r)};
+        double nearest = distance(pixel, way[0]);
+        for (std::size_t i = 1; i < way.size(); ++i)
+          nearest = std::min(nearest, distance_to_segment(pixel, way[i - 1], way[i]));
+        const bool is_in_window = c >= window.x0 && c < window.x1 && r >= window.y0 && r < window.y1;
+        if (std::abs(nearest - radius) <= 1e-9) continue;
+        EXPECT_EQ(contains(region, c, r), is_in_window && nearest < radius) << trial << ": " << c << ", " << r;
+      }
+  }
+  EXPECT_TRUE(region_from_stroke({}, 3, window).empty());
+  EXPECT_EQ(region_from_stroke(std::vector<PixelPoint>{{5, 6}}, 0, window), Region::from_box({5, 6, 6, 7}));
+}
+
 }  // namespace
 }  // namespace tassilo

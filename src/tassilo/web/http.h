@@ -23,8 +23,8 @@ struct WebResponse {
   std::string body;
 };
 
-/// Answers what is no file and no channel. Called on the server's thread, one request at a time: it must not take long.
-/// What it throws is told as status 500.
+/// Answers what is no file and no channel. Called on a thread of its own, one request after the other: who takes long
+/// keeps other requests waiting, but neither files nor channels. What it throws is told as status 500.
 using WebHandler = std::function<WebResponse(const WebRequest&)>;
 
 /// "%2F" becomes "/"; nothing when an escape is broken or stands for a control character.

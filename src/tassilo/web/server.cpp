@@ -14,7 +14,10 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
+#include <deque>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -46,10 +49,57 @@ constexpr std::string_view kChannelPath = "/ws/";
 std::string text_of(boost::beast::string_view text) { return {text.data(), text.size()}; }
 std::string_view view_of(boost::beast::string_view text) { return {text.data(), text.size()}; }
 
+/// Does one thing after the other in a thread of its own.
+class Worker {
+ public:
+  Worker() : thread_([this] { work(); }) {}
+  /// Ends with what is being done; what waits is dropped.
+  ~Worker() { end(); }
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
+
+  void add(std::function<void()> task) {
+    {
+      const std::lock_guard lock(mutex_);
+      tasks_.push_back(std::move(task));
+    }
+    wanted_.notify_one();
+  }
+  void end() {
+    {
+      const std::lock_guard lock(mutex_);
+      ending_ = true;
+    }
+    wanted_.notify_one();
+    if (thread_.joinable()) thread_.join();
+    tasks_.clear();
+  }
+
+ private:
+  void work() {
+    for (;;) {
+      std::unique_lock lock(mutex_);
+      wanted_.wait(lock, [&] { return ending_ || !tasks_.empty(); });
+      if (ending_) return;
+      const auto task = std::move(tasks_.front());
+      tasks_.pop_front();
+      lock.unlock();
+      task();
+    }
+  }
+
+  std::mutex mutex_;
+  std::condition_variable wanted_;
+  std::deque<std::function<void()>> tasks_;  ///< At most one of each connection.
+  bool ending_ = false;
+  std::thread thread_;
+};
+
 /// What all sessions share; on the server's thread but for the atomics and what the mutex guards.
 struct Shared {
   WebOptions options;
   WebHandler handler;
+  Worker* worker = nullptr;
   int port = 0;
   std::atomic<std::int64_t> clients = 0, requests = 0, refused = 0, sent = 0, dropped = 0;
 };
@@ -204,10 +254,7 @@ class Session : public std::enable_shared_from_this<Session> {
     const std::string query = mark == std::string::npos ? "" : target.substr(mark + 1);
     const auto said = [&](Response response, bool is_refusal = false) {
       shared_.refused += is_refusal;
-      response.version(asked.version());
-      response.keep_alive(asked.keep_alive());
-      if (asked.method() == http::verb::head) response.body().clear();
-      write(std::move(response));
+      say(std::move(response), Manner{asked.version(), asked.keep_alive(), asked.method() == http::verb::head});
     };
     if (!path || !path->starts_with('/')) return said(plain(http::status::bad_request, "the path is broken"), true);
 
@@ -248,10 +295,29 @@ class Session : public std::enable_shared_from_this<Session> {
     const bool reads = asked.method() == http::verb::get || asked.method() == http::verb::head;
     if (reads)
       if (const auto file = served_file(shared_.options.pages, *path)) return said(page(*file));
-    said(handled({text_of(asked.method_string()), *path, query, asked.body()}));
+    // The answer may take its time; until then nothing is read, so there is one at a time.
+    stream_.expires_never();
+    const Manner manner{asked.version(), asked.keep_alive(), asked.method() == http::verb::head};
+    shared_.worker->add([self = shared_from_this(), manner,
+                         asked = WebRequest{text_of(asked.method_string()), *path, query, request.body()}] {
+      auto response = std::make_shared<Response>(self->handled(asked));
+      asio::post(self->stream_.get_executor(), [self, manner, response] { self->say(std::move(*response), manner); });
+    });
   }
 
-  Response handled(const WebRequest& request) {
+  /// How a request wants to be answered.
+  struct Manner {
+    unsigned version = 11;
+    bool keep_alive = true, is_head = false;
+  };
+  void say(Response response, const Manner& manner) {
+    response.version(manner.version);
+    response.keep_alive(manner.keep_alive);
+    if (manner.is_head) response.body().clear();
+    write(std::move(response));
+  }
+
+  Response handled(const WebRequest& request) const {
     WebResponse answer;
     try {
       answer = shared_.handler ? shared_.handler(request) : WebResponse{404, "text/plain", "there is nothing here\n"};
@@ -345,12 +411,14 @@ class WebServer::Implementation {
     acceptor_.bind(endpoint, error), must();
     acceptor_.listen(asio::socket_base::max_listen_connections, error), must();
     shared_.port = acceptor_.local_endpoint().port();
+    shared_.worker = &worker_;
     accept();
     thread_ = std::thread([this] { serve(); });
   }
   ~Implementation() {
     context_.stop();
     thread_.join();
+    worker_.end();
   }
 
   const Shared& shared() const { return shared_; }
@@ -426,6 +494,7 @@ class WebServer::Implementation {
   asio::io_context context_{1};
   tcp::acceptor acceptor_;
   asio::steady_timer pause_;
+  Worker worker_;  ///< After the context: what waits in it holds sessions.
   std::thread thread_;
 };
 

@@ -74,7 +74,7 @@ export interface Api {
   change(change: Change): Promise<Stage[]>;
 }
 
-const patience_ms = 5000;
+export const patience_ms = 5000;
 
 export async function ask<T>(path: string, init: RequestInit = {}): Promise<T> {
   const response = await fetch(path, { ...init, cache: "no-store", signal: AbortSignal.timeout(patience_ms) });

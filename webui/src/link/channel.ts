@@ -42,6 +42,8 @@ export class Channel {
     private readonly world: ChannelWorld,
     private readonly message: (data: unknown) => void,
     private readonly changed: (state: ChannelState) => void,
+    /// As binary messages come. A blob passes through more hands, but is not copied before it is wanted.
+    private readonly binary: "blob" | "arraybuffer" = "blob",
   ) {}
 
   start(): void {
@@ -74,7 +76,7 @@ export class Channel {
       return;
     }
     this.socket = socket;
-    socket.binaryType = "blob";
+    socket.binaryType = this.binary;
     socket.onopen = () => {
       if (this.socket === socket) this.set({ kind: "open" });
     };

@@ -57,6 +57,11 @@ export class StagesModel {
     this.update({ errors: without(errors, [key]), refused: without(refused, [key]) });
   }
 
+  value_of(key: string): number | null {
+    if (this.view.value.errors.has(key)) return null;
+    return (this.view.value.stages ?? []).flatMap(options_of).find((option) => option.key === key)?.value ?? null;
+  }
+
   private send(change: Change, typed: string): Promise<void> {
     const keys = Object.keys(change);
     this.update({ pending: new Set([...this.view.value.pending, ...keys]), errors: without(this.view.value.errors, keys) });

@@ -5,8 +5,8 @@
 
 #include <Eigen/Dense>
 #include <cmath>
-#include <numbers>
 
+#include "tassilo/calibrate/internal/dot_image.h"
 #include "tassilo/calibrate/internal/lens.h"
 
 namespace tassilo {
@@ -33,41 +33,12 @@ struct PointCost {
     return true;
   }
 
-  /// The centroid of a disc's image: that of a polygon whose second moments relative to its area are the disc's, which
-  /// is what the centroid depends on up to the fourth order.
-  template <class T>
-  bool centroid(const T* camera, const T* pose, T* pixel) const {
-    constexpr int corners = 8;
-    const double turn = 2 * std::numbers::pi / corners;
-    const double reach = radius * std::sqrt(3 / (2 + std::cos(turn)));
-    T x[corners], y[corners];
-    for (int i = 0; i < corners; ++i) {
-      T at[2];
-      if (!shown(camera, pose, on_target.x() + reach * std::cos(i * turn), on_target.y() + reach * std::sin(i * turn),
-                 at))
-        return false;
-      x[i] = at[0];
-      y[i] = at[1];
-    }
-    T area(0), moment_x(0), moment_y(0);
-    for (int i = 2; i < corners; ++i) {  // triangles with corner 0
-      const T ax = x[i - 1] - x[0], ay = y[i - 1] - y[0], bx = x[i] - x[0], by = y[i] - y[0];
-      const T doubled = ax * by - ay * bx;
-      area += doubled;
-      moment_x += doubled * (ax + bx);
-      moment_y += doubled * (ay + by);
-    }
-    if (!(area > 0.)) return false;
-    pixel[0] = x[0] + moment_x / (3. * area);
-    pixel[1] = y[0] + moment_y / (3. * area);
-    return true;
-  }
-
   template <class T>
   bool operator()(const T* camera, const T* pose, T* residual) const {
     T pixel[2];
-    const bool is_seen =
-        radius > 0 ? centroid(camera, pose, pixel) : shown(camera, pose, on_target.x(), on_target.y(), pixel);
+    const auto shows = [&](double x, double y, T* at) { return shown(camera, pose, x, y, at); };
+    const bool is_seen = radius > 0 ? disc_centroid(on_target.x(), on_target.y(), radius, shows, pixel)
+                                    : shows(on_target.x(), on_target.y(), pixel);
     if (!is_seen) return false;
     residual[0] = seen.x() - pixel[0];
     residual[1] = seen.y() - pixel[1];

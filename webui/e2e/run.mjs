@@ -1,0 +1,95 @@
+// What the tests in a browser share: arguments, the server, the browser, and waiting.
+import { spawn } from "node:child_process";
+import { accessSync, constants, mkdirSync } from "node:fs";
+import path from "node:path";
+import { parseArgs } from "node:util";
+import { chromium } from "playwright-core";
+
+function program_in_path(names) {
+  for (const name of names) {
+    for (const folder of (process.env.PATH ?? "").split(path.delimiter)) {
+      try {
+        accessSync(path.join(folder, name), constants.X_OK);
+        return path.join(folder, name);
+      } catch { /* not here */ }
+    }
+  }
+  return "";
+}
+
+export const patience_ms = 20000;
+
+/// Starts the server and waits for its address. `end` ends it, and waits for that.
+function start_server([program, ...rest]) {
+  return new Promise((resolve, reject) => {
+    const child = spawn(program, rest, { stdio: ["ignore", "pipe", "pipe"] });
+    let said = "";
+    const gone = new Promise((done) => child.once("exit", done));
+    const end = async () => {
+      child.kill("SIGTERM");
+      const stubborn = setTimeout(() => child.kill("SIGKILL"), 5000);
+      await gone;
+      clearTimeout(stubborn);
+    };
+    const timer = setTimeout(() => end().then(() => reject(new Error(`no address within ${patience_ms} ms; it said: ${said}`))), patience_ms);
+    const listen = (data) => {
+      said += data;
+      const url = /https?:\/\/[^\s"']+(?=\s)/.exec(said)?.[0];
+      if (url === undefined) return;
+      clearTimeout(timer);
+      resolve({ url, end });
+    };
+    child.stdout.on("data", listen);
+    child.stderr.on("data", listen);
+    child.once("error", reject);
+    child.once("exit", (code) => {
+      clearTimeout(timer);
+      reject(new Error(`the server ended with ${code}; it said: ${said}`));
+    });
+  });
+}
+
+export async function until(what, holds) {
+  const end = Date.now() + patience_ms;
+  for (;;) {
+    const result = await holds();
+    if (result) return result;
+    if (Date.now() > end) throw new Error(`waited ${patience_ms} ms in vain: ${what}`);
+    await new Promise((done) => setTimeout(done, 50));
+  }
+}
+
+/// Runs `main(url, browser, screenshots)` as the command line says, and sets the exit code.
+export async function run(name, main) {
+  const { values: options, positionals: command } = parseArgs({
+    options: { screenshots: { type: "string", default: "" }, browser: { type: "string", default: "" }, url: { type: "string", default: "" } },
+    allowPositionals: true,
+  });
+  if ((options.url === "") === (command.length === 0)) {
+    console.error(`${name}: needs either --url URL or -- COMMAND...`);
+    process.exit(2);
+  }
+  const program = options.browser || program_in_path(["chromium-headless-shell", "chromium", "chromium-browser", "google-chrome"]);
+  if (program === "") {
+    console.log("skipped: no chromium-headless-shell or chromium; tools/install_deps.sh --references installs one");
+    process.exit(77);
+  }
+  if (options.screenshots !== "") mkdirSync(options.screenshots, { recursive: true });
+  const server = options.url === "" ? await start_server(command) : { url: options.url, end: async () => {} };
+  let browser;
+  try {
+    browser = await chromium.launch({
+      executablePath: program,
+      args: ["--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-component-update", "--disable-sync", "--no-first-run",
+             "--disable-dev-shm-usage"],
+    });
+    await main(server.url, browser, options.screenshots);
+    console.log("all steps passed");
+  } catch (error) {
+    console.error(error);
+    process.exitCode = 1;
+  } finally {
+    await browser?.close();
+    await server.end();
+  }
+}
