@@ -574,7 +574,8 @@ RecycledVector<PoseFit> fit_poses(const FieldTarget& target, const PoseObservati
     RecycledVector<PoseGaussian> tried;
     for (auto& [pose, score] : search.candidates()) {
       if (tried.size() == most_fits) break;
-      if (std::ranges::any_of(tried, [&](const PoseGaussian& other) { return are_near(other, pose, 0.15, 0.1); }))
+      if (std::ranges::any_of(tried,
+                              [&pose = pose](const PoseGaussian& other) { return are_near(other, pose, 0.15, 0.1); }))
         continue;
       tried.push_back(pose);
       pose.covariance = Eigen::Vector3d(0.01, 0.01, 0.01).asDiagonal();  // its lines lie where the field's are
@@ -605,7 +606,8 @@ RecycledVector<PoseFit> search_poses(const FieldTarget& target, const PoseObserv
   for (const auto& [pose, score] : search.candidates()) {
     if (tried.size() == most_fits) break;
     // Near one that was tried it would end there.
-    if (std::ranges::any_of(tried, [&](const PoseGaussian& other) { return are_near(other, pose, 0.15, 0.1); }))
+    if (std::ranges::any_of(tried,
+                            [&pose = pose](const PoseGaussian& other) { return are_near(other, pose, 0.15, 0.1); }))
       continue;
     tried.push_back(pose);
     PoseFit fit = fit_with<3>(fitter, pose, pose).fit;
