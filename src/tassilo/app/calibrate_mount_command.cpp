@@ -12,6 +12,7 @@
 
 #include "tassilo/app/calibration_views.h"
 #include "tassilo/app/commands.h"
+#include "tassilo/app/residual_picture.h"
 #include "tassilo/app/written_files.h"
 #include "tassilo/base/error.h"
 #include "tassilo/calibrate/mount_from_target.h"
