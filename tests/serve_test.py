@@ -19,7 +19,7 @@ import tempfile
 import time
 import unittest
 
-from program import DATA, ROOT, TIMEOUT_S, ProgramTest, main, without_timing
+from program import DATA, ROOT, SHARED, TIMEOUT_S, ProgramTest, main, png_size, without_timing
 
 try:
     import jsonschema
@@ -27,6 +27,7 @@ except ImportError:
     jsonschema = None
 
 RECORDING = DATA / "d01_approach"
+CALIBRATION = SHARED / "data/msl98/calibration"
 TOKEN = "0123456789abcdefABCDEF"
 
 
@@ -291,9 +292,98 @@ class Serve(Served):
         # The table in use was trained from the same file.
         self.assertEqual(self.get("/api/training/result")["table"], self.get("/api/training/table"))
 
+    def test_a_target_is_looked_for(self):
+        self.succeeds("calibrate", "target", "dots:7x7:0.02:0.005", "--output", "target.png")
+        self.write("no_camera.yaml", "{colors: div.yaml}\n")
+        self.serve(robot="no_camera.yaml", colors=None, source=("target.png",))
+        self.until(lambda: self.get("/api/state")["frames"] > 0)
+        state = self.get("/api/calibration")
+        self.assertEqual((state["is_on"], state["views"], state["result"], state["now"]), (False, [], None, None))
+        self.assertIn("names no `camera:`", state["file"]["refusal"])
+        self.assertIn("is not on", self.send("POST", "/api/calibration/views", {}, 409))
+        for body, says in (({"targets": []}, "targets"), ({"targets": ["dots:7x7:0.02:0.005"] * 5}, "targets"), ({"targets": ["stars:7x7:0.02"]}, "must be dots"),
+                           ({"targets": ["dots:7x7:0." + "0" * 1000 + "2:0.005"]}, "letters"), ({"targets": "dots:7x7:0.02:0.005"}, "list"),
+                           ({"model": "fisheye"}, "model"), ({"is_on": "perhaps"}, "is_on"), ({"on": True}, "on"), ("{", "JSON"), ([], "map")):
+            text = body if isinstance(body, str) else json.dumps(body)
+            status, data, _ = self.ask("PUT", "/api/calibration", text)
+            self.assertEqual(status, 400, data)
+            self.assertIn(says, data.decode())
+        state = self.send("PUT", "/api/calibration", {"is_on": True, "targets": ["checker:9x6:0.02", "dots:7x7:0.02:0.005"], "model": "equidistant"})
+        self.assertEqual((state["is_on"], state["model"], state["targets"]), (True, "equidistant", ["checker:9x6:0.02", "dots:7x7:0.02:0.005"]))
+        view, = self.until(lambda: self.get("/api/calibration")["views"])
+        self.assertEqual((view["target"], len(view["points"]), view["rms_px"], view["rejected"]), ("dots:7x7:0.02:0.005", 49, None, ""))
+        state = self.until(lambda: (now := self.get("/api/calibration"))["now"]["verdict"] == f"like view {view['id']}" and now)
+        self.assertEqual((state["now"]["target"], state["now"]["is_captured"]), (view["target"], False))
+        self.assertEqual((state["width"], state["height"]), png_size((self.folder / "target.png").read_bytes()))
+        self.assertEqual(sum(state["coverage"]["points"]), 49)
+        self.assertEqual(len(self.send("POST", "/api/calibration/views", {})["views"]), 2, "asked for, however alike")
+        self.assertIn("must be at least 3", self.send("POST", "/api/calibration/solve", {}, 409))
+        self.assertIn("not worked out", self.send("POST", "/api/calibration/save", {}, 409))
+        self.assertEqual(self.ask("GET", "/api/calibration/residuals")[0], 404)
+        self.assertEqual(self.ask("DELETE", "/api/calibration/views/../1")[0], 404)
+        self.assertEqual(self.ask("DELETE", "/api/calibration/solve")[0], 405)
+        self.send("PUT", "/api/calibration", {"is_automatic": False})
+        self.assertEqual(len(self.send("DELETE", f"/api/calibration/views/{view['id']}", None)["views"]), 1)
+        self.assertEqual(self.send("DELETE", "/api/calibration/views", None)["views"], [])
+        self.assertFalse(self.send("PUT", "/api/calibration", {"is_on": False})["is_on"])
+
+    @unittest.skipUnless(CALIBRATION.is_dir(), "needs ../shared/data/msl98/calibration")
+    def test_a_camera_is_calibrated_saved_and_taken_over(self):
+        folder = pathlib.Path(tempfile.mkdtemp(dir=self.folder))
+        for name in ("div.yaml", "div.png"):
+            shutil.copy(self.folder / name, folder)
+        mount = "camera_pose_in_robot: {x: 0.06, y: 0.015, z: 0.52, roll: 0, pitch: 0.24, yaw: 0}"
+        text = re.sub("camera_pose_in_robot.*", "", (CALIBRATION / "vga.yaml").read_text()) + mount + "\n"
+        # A focal length that somebody guessed.
+        before = re.sub(r"(camera_matrix:(?:.|\n)*?data: \[)[\d.]+", r"\g<1>600.0", text)
+        self.assertNotEqual(before, text)
+        camera = folder / "camera.yaml"
+        camera.write_text(before)
+        (folder / "robot.yaml").write_text("{camera: camera.yaml, field: msl98, colors: div.yaml}\n")
+        self.serve("--fps", "5", robot=folder / "robot.yaml", colors=None, source=(CALIBRATION / "vga",))
+        self.until(lambda: self.get("/api/state")["frames"] > 0)
+        self.send("PUT", "/api/calibration", {"is_on": True, "targets": ["dots:7x7:0.04:0.01", "checker:9x6:0.04"], "model": "plumb_bob"})
+        images = len(list((CALIBRATION / "vga").glob("*.png")))
+        self.until(lambda: len(self.get("/api/calibration")["views"]) == images)
+        self.until(lambda: self.get("/api/calibration")["now"]["verdict"].startswith("like view"))
+        self.send("PUT", "/api/calibration", {"is_automatic": False})
+        self.send("POST", "/api/calibration/solve", {})
+        state = self.until(lambda: not (now := self.get("/api/calibration"))["is_solving"] and now)
+        self.assertEqual(state["failure"], "")
+        result = state["result"]
+        self.assertEqual((result["model"], result["views"]), ("plumb_bob", images))
+        self.assertLess(result["rms_px"], .3)
+        self.assertEqual([value["name"] for value in result["values"]][:4], ["fx", "fy", "cx", "cy"])
+        truth = float(re.search(r"camera_matrix:(?:.|\n)*?data: \[([\d.]+)", text)[1])
+        self.assertLess(abs(result["values"][0]["value"] / truth - 1), .005)
+        self.assertTrue(all(view["rms_px"] > 0 and view["rejected"] == "" for view in state["views"]))
+        status, picture, answer = self.ask("GET", "/api/calibration/residuals")
+        self.assertEqual((status, answer.getheader("Content-Type")), (200, "image/png"))
+        self.assertGreaterEqual(png_size(picture)[0], 900)
+        self.assertEqual((state["file"]["is_saved"], state["file"]["refusal"], camera.read_text()), (False, "", before))
+
+        camera.write_text("half a fi")
+        self.assertNotEqual(self.get("/api/calibration")["file"]["refusal"], "")
+        self.assertIn("camera.yaml", self.send("POST", "/api/calibration/save", {}, 409))
+        self.assertEqual(camera.read_text(), "half a fi")
+        camera.write_text(before)
+        taken_over = self.get("/api/state")["configuration"]["taken_over"]
+        self.assertTrue(self.send("POST", "/api/calibration/save", {})["file"]["is_saved"])
+        self.until(lambda: self.get("/api/state")["configuration"]["taken_over"] > taken_over)
+        self.assertEqual(self.get("/api/state")["configuration"]["refusal"], "")
+        self.assertIn("pitch: 0.24", camera.read_text())
+        kept, = (folder / "camera_history").iterdir()
+        self.assertEqual(kept.read_text(), before)
+        self.assertRegex(kept.name, r"^\d{4}-\d\d-\d\dT\d\d-\d\d-\d\dZ\.yaml$")
+        # The command line makes the same camera of the same images, but for the order of the views.
+        self.succeeds("calibrate", "intrinsics", CALIBRATION / "vga", "-t", "dots:7x7:0.04:0.01", "-t", "checker:9x6:0.04", "-o", folder / "again.yaml", "-q")
+        focal = [float(re.search(r"camera_matrix:(?:.|\n)*?data: \[([\d.]+)", file.read_text())[1]) for file in (folder / "again.yaml", camera)]
+        self.assertAlmostEqual(*focal, delta=.05)
+
     def test_keeps_others_out(self):
         port = self.serve("--token", TOKEN)
         self.assertEqual(self.ask("GET", "/api/state")[0], 401)
+        self.assertEqual(self.ask("POST", "/api/calibration/save", "{}")[0], 401)
         self.assertEqual(Channel(port, "scene").status, 401)
         status, _, answer = self.ask("GET", f"/?token={TOKEN}")
         self.assertEqual((status, answer.getheader("Location")), (303, "/"))

@@ -11,6 +11,7 @@
 
 #include "tassilo/app/calibration_views.h"
 #include "tassilo/app/commands.h"
+#include "tassilo/app/residual_picture.h"
 #include "tassilo/app/written_files.h"
 #include "tassilo/base/error.h"
 #include "tassilo/calibrate/april_grid.h"
@@ -73,18 +74,6 @@ void print_result(const Intrinsics& result) {
       100 * result.coverage.share, 100 * result.coverage.reach, result.worst_sigma_px);
 }
 
-void write_report(const std::string& folder, const Intrinsics& result) {
-  CalibrationDrawing drawing;
-  drawing.width = result.camera.width;
-  drawing.height = result.camera.height;
-  drawing.cell_columns = result.coverage.columns;
-  drawing.cell_rows = result.coverage.rows;
-  drawing.cell_points = result.coverage.points;
-  drawing.points = drawn_points(result.views);
-  drawing.title = fmt::format("{}: {}", result.camera.name, distortion_name(result.camera.distortion));
-  write_residuals(folder, drawing);
-}
-
 int intrinsics_command(const IntrinsicsArguments& arguments) {
   std::vector<Target> targets;
   for (const std::string& text : arguments.targets) targets.push_back(target_from_text(text));
@@ -112,7 +101,7 @@ int intrinsics_command(const IntrinsicsArguments& arguments) {
     print_result(result);
   }
   for (const std::string& warning : result.warnings) warn("calibration", warning);
-  if (!arguments.report.empty()) write_report(arguments.report, result);
+  if (!arguments.report.empty()) write_residuals(arguments.report, residual_drawing(result));
   write_camera(arguments.output, {result.camera, mount});
   if (!arguments.quiet) fmt::print("\nwrote {}\n", arguments.output);
   return 0;

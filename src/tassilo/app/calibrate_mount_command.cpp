@@ -12,6 +12,7 @@
 
 #include "tassilo/app/calibration_views.h"
 #include "tassilo/app/commands.h"
+#include "tassilo/app/residual_picture.h"
 #include "tassilo/app/robot_setup.h"
 #include "tassilo/app/run.h"
 #include "tassilo/app/written_files.h"

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <utility>
 
+#include "tassilo/app/target_look.h"
 #include "tassilo/base/error.h"
-#include "tassilo/calibrate/checkerboard.h"
 #include "tassilo/files/png.h"
 #include "tassilo/source/frame_source.h"
 
@@ -18,32 +18,13 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostImages = 500;
 
-std::vector<std::uint8_t> gray_of(const FrameView& view) {
-  std::vector<std::uint8_t> gray;
-  gray.reserve(static_cast<std::size_t>(view.width()) * static_cast<std::size_t>(view.height()));
-  for (int r = 0; r < view.height(); ++r)
-    for (int c = 0; c < view.width(); ++c) gray.push_back(view.y(c, r));
-  return gray;
-}
-
-/// Looks for each target until one is there.
 Look look_at(const Frame& frame, const std::string& name, const std::vector<Target>& targets,
              std::vector<TargetView>& views) {
-  const auto gray = gray_of(frame.view);
-  const ByteView image{gray.data(), frame.view.width(), frame.view.height(), frame.view.width()};
-  Look look{name, {}, {}};
-  for (const Target& target : targets) {
-    TargetSearch search = find_target(image, target);
-    for (const std::string& remark : search.remarks) warn(name, remark);
-    if (search.view) {
-      look.view = views.size();
-      look.reason.clear();
-      views.push_back(std::move(*search.view));
-      return look;
-    }
-    look.reason += fmt::format("{}no {}: {}", look.reason.empty() ? "" : "; ", to_text(target), search.reason);
-  }
-  return look;
+  TargetSearch search = find_any_target(gray_of(frame.view), targets);
+  for (const std::string& remark : search.remarks) warn(name, remark);
+  if (!search.view) return {name, {}, std::move(search.reason)};
+  views.push_back(std::move(*search.view));
+  return {name, views.size() - 1, {}};
 }
 
 }  // namespace
@@ -83,14 +64,6 @@ void warn(const std::string& what, const std::string& reason) {
 void check_folder_of(const std::string& output) {
   if (const fs::path folder = fs::path(output).parent_path(); !folder.empty() && !fs::is_directory(folder))
     throw Error(output, "cannot be created: there is no folder " + folder.string());
-}
-
-std::vector<CalibrationDrawing::Point> drawn_points(std::span<const ViewResult> views) {
-  std::vector<CalibrationDrawing::Point> points;
-  for (const ViewResult& view : views)
-    if (view.rejected.empty())
-      for (const PointResidual& point : view.points) points.push_back({point.seen, point.residual, point.used});
-  return points;
 }
 
 void write_residuals(const std::string& folder, const CalibrationDrawing& drawing) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -43,8 +42,6 @@ void warn(const std::string& what, const std::string& reason);
 /// Throws Error when the folder of a file that is to be written is not there.
 void check_folder_of(const std::string& output);
 
-/// The points of views that count.
-std::vector<CalibrationDrawing::Point> drawn_points(std::span<const ViewResult> views);
 /// Writes residuals.png to a folder, which is made.
 void write_residuals(const std::string& folder, const CalibrationDrawing& drawing);
 

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 
+#include "tassilo/app/calibration_requests.h"
 #include "tassilo/app/frame_bytes.h"
 #include "tassilo/app/recording_api.h"
 #include "tassilo/app/training_requests.h"
@@ -155,8 +156,11 @@ void LiveView::show(const Frame& frame, const Scene& scene, const VisionWorkspac
   seen_.t = scene.t;
   ++seen_.frames;
   if (!chosen_) now_ = configuration;  // what was chosen meanwhile counts already
-  if (drawing_ || !(is_picture_wanted || has_frame_listeners || is_frame_wanted_)) return;
-  snapshot_ = {frame, {}};
+  if (drawing_) return;
+  CalibrationSession* const calibration =
+      calibration_ != nullptr && calibration_->wants_frame() ? calibration_.get() : nullptr;
+  if (!(is_picture_wanted || has_frame_listeners || is_frame_wanted_ || calibration != nullptr)) return;
+  snapshot_ = {frame, {}, calibration};
   if (is_picture_wanted) snapshot_->scenery = {scene, workspace.surface, configuration};
   wanted_.notify_one();
 }
@@ -227,6 +231,7 @@ void LiveView::draw_pictures() {
 }
 
 void LiveView::publish(const Snapshot& snapshot) {
+  if (snapshot.calibration != nullptr) snapshot.calibration->see(snapshot.frame);
   bool is_frame_wanted = server_.listeners(kFrame) > 0;
   {
     const std::lock_guard lock(mutex_);
@@ -310,6 +315,20 @@ WebResponse LiveView::train(const WebRequest& request) {
        [this](std::optional<std::int64_t> frame) { return shown_frame(frame); }, [this] { take_over_files(); }});
 }
 
+WebResponse LiveView::calibrate(const WebRequest& request) {
+  CalibrationSession* session = nullptr;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!now_) return refusal(503, "the source is not open yet");
+    if (!calibration_) {
+      const auto camera = std::ranges::find(now_->setup.read, std::string(kCameraRole), &NamedFile::role);
+      calibration_ = std::make_unique<CalibrationSession>(camera != now_->setup.read.end() ? camera->path : "");
+    }
+    session = calibration_.get();
+  }
+  return answer_calibration(*session, request, [this] { take_over_files(); });
+}
+
 std::string LiveView::state_json() const {
   const WebCounts counts = server_.counts();
   const json recording = recording_json(recorder_->state());
@@ -350,11 +369,11 @@ WebResponse LiveView::answer(const WebRequest& request) {
     return {200, "application/json", stages_json(*now_, changes_)};
   }
   if (request.path == "/api/training" || request.path.starts_with("/api/training/")) return train(request);
+  if (request.path == "/api/calibration" || request.path.starts_with("/api/calibration/")) return calibrate(request);
   if (request.path == "/")
     return refusal(404,
-                   "the pages are not installed; /api/state, /api/stages, /api/training, /api/recording, /ws/scene, "
-                   "/ws/picture and "
-                   "/ws/frame are here");
+                   "the pages are not installed; /api/state, /api/stages, /api/training, /api/calibration, "
+                   "/api/recording, /ws/scene, /ws/picture and /ws/frame are here");
   return refusal(404, "there is nothing at " + request.path);
 }
 

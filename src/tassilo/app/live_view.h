@@ -14,6 +14,7 @@
 #include <thread>
 #include <utility>
 
+#include "tassilo/app/calibration_session.h"
 #include "tassilo/app/configuration_watch.h"
 #include "tassilo/app/recent_median.h"
 #include "tassilo/app/training_session.h"
@@ -85,7 +86,8 @@ class LiveView {
   };
   struct Snapshot {
     Frame frame;
-    std::optional<Scenery> scenery;  ///< Where the picture is wanted.
+    std::optional<Scenery> scenery;             ///< Where the picture is wanted.
+    CalibrationSession* calibration = nullptr;  ///< Where it wants the frame.
   };
   struct Seen {
     std::string source_name, source_description;
@@ -103,6 +105,7 @@ class LiveView {
   WebResponse answer(const WebRequest& request);
   WebResponse change_stages(const std::string& body);
   WebResponse train(const WebRequest& request);
+  WebResponse calibrate(const WebRequest& request);
   void take_over_files();
   std::shared_ptr<const std::string> shown_frame(std::optional<std::int64_t> frame);
   std::string state_json() const;
@@ -120,6 +123,7 @@ class LiveView {
   std::condition_variable wanted_, shown_;
   Seen seen_;
   mutable RecentMedian latency_ms_;
+  std::unique_ptr<CalibrationSession> calibration_;  ///< Since it was first asked for; then it stays.
   Load load_;
   std::shared_ptr<const Configuration> now_, chosen_;
   VisionChanges changes_;

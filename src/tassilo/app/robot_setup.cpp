@@ -72,7 +72,7 @@ RobotSetup read_robot_setup(const std::string& robot_file, const std::string& co
       throw Error(robot_file, "has a camera but no `field:`; sizes of ball, goals and lines are needed on the floor");
     setup.vision.camera = camera.model;
     setup.vision.mount = camera.mount;
-    setup.read.push_back({"camera file", file});
+    setup.read.push_back({kCameraRole, file});
   }
   // Without a field file: whatever may be there, in the image alone.
   setup.vision.field = robot.field ? named_field(robot_file, *robot.field) : read_field("msl98");

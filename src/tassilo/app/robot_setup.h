@@ -13,8 +13,9 @@
 
 namespace tassilo {
 
-/// The role of a color table among the files that were read.
+/// The roles of a color table and of a camera file among the files that were read.
 inline constexpr const char* kColorsRole = "color table";
+inline constexpr const char* kCameraRole = "camera file";
 
 /// What a robot sees with, and the files that said so.
 struct RobotSetup {

@@ -251,7 +251,8 @@ class Run {
 
   void see_all(RunSinks& sinks) {
     std::optional<double> last_t;
-    auto due = Clock::now();
+    // Played again: the last frame is seen as long as the one before it, also by those who look at single images.
+    auto due = Clock::now() + last_step_;
     while (!interrupted) {
       const auto before = Clock::now();
       const std::optional<Frame> frame = source_->next();
@@ -262,8 +263,8 @@ class Run {
         // In real time, but a gap in the recording does not stop it for long.
         constexpr double longest_gap = 1;  // [s]
         const double step = last_t ? std::clamp(frame->t - *last_t, 0., longest_gap) : 0;
-        due = std::max(due + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(step)),
-                       Clock::now() - std::chrono::seconds(1));
+        last_step_ = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(step));
+        due = std::max(due + last_step_, Clock::now() - std::chrono::seconds(1));
         last_t = frame->t;
         wait_until(due);
       }
@@ -383,6 +384,7 @@ class Run {
   std::optional<FieldTarget> drift_target_;
   std::optional<Progress> progress_;
   std::int64_t read_ = 0, done_ = 0;
+  Clock::duration last_step_{};              ///< From frame to frame of a file that is played in real time.
   std::optional<ConfigurationWatch> watch_;  ///< Last: its thread uses the above.
 };
 

@@ -98,6 +98,9 @@ struct Intrinsics {
   std::vector<std::string> warnings;  ///< Lower-case, no full stop.
 };
 
+/// Where the points of views are, before there is a camera: `reach` stays 0. `size` has at least one pixel.
+Coverage coverage_of(ImageSize size, std::span<const TargetView> views);
+
 /// Least views that a calibration needs.
 inline constexpr int kLeastViews = 3;
 

@@ -38,30 +38,51 @@ std::optional<Eigen::Vector2d> slope(ImageSize size, LensModel model, std::vecto
   return Eigen::Vector2d(high->x - low->x, high->y - low->y) / (2 * step);
 }
 
-}  // namespace
-
-Coverage coverage_of(const CameraModel& camera, std::span<const ViewResult> views) {
+Coverage empty_coverage(ImageSize size) {
   Coverage out;
   out.columns = 8;
-  out.rows = std::max(1, static_cast<int>(std::lround(8. * camera.height / camera.width)));
+  out.rows = std::max(1, static_cast<int>(std::lround(8. * size.height / size.width)));
   out.points.assign(static_cast<std::size_t>(out.columns * out.rows), 0);
+  return out;
+}
+
+void add_point(Coverage& coverage, ImageSize size, PixelPoint at) {
+  const int column = std::clamp(static_cast<int>((at.x + .5) * coverage.columns / size.width), 0, coverage.columns - 1);
+  const int row = std::clamp(static_cast<int>((at.y + .5) * coverage.rows / size.height), 0, coverage.rows - 1);
+  ++coverage.points[static_cast<std::size_t>(row * coverage.columns + column)];
+}
+
+void set_share(Coverage& coverage) {
+  const auto covered = std::ranges::count_if(coverage.points, [](int count) { return count > 0; });
+  coverage.share = static_cast<double>(covered) / static_cast<double>(coverage.points.size());
+}
+
+}  // namespace
+
+Coverage coverage_of(ImageSize size, std::span<const TargetView> views) {
+  Coverage out = empty_coverage(size);
+  for (const TargetView& view : views)
+    for (const SeenPoint& point : view.points) add_point(out, size, point.pixel);
+  set_share(out);
+  return out;
+}
+
+Coverage coverage_of(const CameraModel& camera, std::span<const ViewResult> views) {
+  const ImageSize size{camera.width, camera.height};
+  Coverage out = empty_coverage(size);
   const double x = std::max(camera.cx, camera.width - 1 - camera.cx);
   const double y = std::max(camera.cy, camera.height - 1 - camera.cy);
   for (const ViewResult& view : views) {
     if (!view.rejected.empty()) continue;
     for (const PointResidual& point : view.points) {
       if (!point.used) continue;
-      const int column =
-          std::clamp(static_cast<int>((point.seen.x + .5) * out.columns / camera.width), 0, out.columns - 1);
-      const int row = std::clamp(static_cast<int>((point.seen.y + .5) * out.rows / camera.height), 0, out.rows - 1);
-      ++out.points[static_cast<std::size_t>(row * out.columns + column)];
+      add_point(out, size, point.seen);
       // Distances as the lens counts them: pixels need not be square.
       const double far = std::hypot((point.seen.x - camera.cx) / camera.fx, (point.seen.y - camera.cy) / camera.fy);
       out.reach = std::max(out.reach, far / std::hypot(x / camera.fx, y / camera.fy));
     }
   }
-  const auto covered = std::ranges::count_if(out.points, [](int count) { return count > 0; });
-  out.share = static_cast<double>(covered) / static_cast<double>(out.points.size());
+  set_share(out);
   return out;
 }
 
