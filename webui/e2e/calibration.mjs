@@ -79,6 +79,7 @@ async function main(url, browser, screenshots, { target, model, views: wanted, "
     await begin.click();
     await new Promise((done) => setTimeout(done, 300));
     assert.equal((await state()).is_on, false);
+    assert.equal(await page.evaluate(() => document.activeElement?.dataset.field), "pitch", "the field that is wrong is gone to");
     await picture("wrong_target", false);
   });
 
@@ -157,11 +158,11 @@ async function main(url, browser, screenshots, { target, model, views: wanted, "
     const last = page.locator(`[data-view="${views.at(-1).id}"]`);
     await last.hover();
     await until("its points are shown", async () => (await shown("pointed")) === views.at(-1).id);
-    await picture("pointed", false);
     await page.mouse.move(5, 5);
     await until("and no longer", async () => (await shown("pointed")) === "");
     await last.getByRole("button", { name: /^forget/ }).focus();
     await until("by keyboard, too", async () => (await shown("pointed")) === views.at(-1).id);
+    await picture("pointed");
     await page.keyboard.press("Enter");
     await until("it is forgotten", async () => !(await state()).views.some(({ id }) => id === views.at(-1).id));
     await until("the page says so", async () => (await last.count()) === 0);

@@ -65,11 +65,14 @@ export class CalibrationCanvas {
     const { session, canvas } = this;
     // A pixel's middle is its place.
     const at = ([x, y]: Point): Point => [(x + 0.5) * sx, (y + 0.5) * sy];
-    if (session.shows_coverage.value) this.draw_coverage(calibration);
+    // Before it is begun all would be missing, which nobody wants to know yet.
+    if (session.shows_coverage.value && (calibration.is_on || calibration.views.length > 0)) this.draw_coverage(calibration);
     if (session.shows_outlines.value) for (const view of calibration.views) this.draw_outline(view, at);
     const fit = this.draw_now(calibration, at);
+    const captured = calibration.views[(session.model.view.value.captured ?? 0) - 1];
+    if (captured !== undefined) this.draw_points(captured.points, at, captured_color, 1);
     const pointed = calibration.views.find(({ id }) => id === session.pointed.value);
-    if (pointed !== undefined) this.draw_pointed(pointed, at);
+    if (pointed !== undefined) this.draw_points(pointed.points, at, pointed_color, 1);
     // What a picture alone cannot tell a test.
     Object.assign(canvas.dataset, {
       covered: String(calibration.coverage.points.filter((n) => n > 0).length), pointed: pointed?.id ?? "", points: String(fit > 0 ? calibration.now!.points.length : 0),
@@ -101,18 +104,14 @@ export class CalibrationCanvas {
     const frame = this.session.frames.newest.value;
     if (!is_on || now === null || frame === null || now.points.length === 0) return 0;
     const fit = fit_of(now.frame, frame.frame, this.session.frames.rate_hz);
-    if (fit === 0) return 0;
-    const color = now.is_captured || this.session.model.view.value.captured !== null ? captured_color : found_color;
-    this.trace(outline_of(now.points).map(at), true);
-    this.stroke(color, 3, 0.4 + 0.6 * fit, []);
-    for (const point of now.points) this.dot(at(point), 3.5, color, 0.4 + 0.6 * fit);
+    if (fit > 0) this.draw_points(now.points, at, now.is_captured ? captured_color : found_color, fit);
     return fit;
   }
 
-  private draw_pointed(view: View, at: (point: Point) => Point): void {
-    this.trace(outline_of(view.points).map(at), true);
-    this.stroke(pointed_color, 3, 1, []);
-    for (const point of view.points) this.dot(at(point), 3.5, pointed_color, 1);
+  private draw_points(points: readonly Point[], at: (point: Point) => Point, color: string, alpha: number): void {
+    this.trace(outline_of(points).map(at), true);
+    this.stroke(color, 3, alpha, []);
+    for (const point of points) this.dot(at(point), 3.5, color, alpha);
   }
 
   private trace(points: readonly Point[], closed: boolean): void {

@@ -55,9 +55,10 @@ export class CalibrationSession {
   }
 
   /// With the targets as they are typed. Those that are none, or are refused, are told, and it does not begin.
-  async begin(): Promise<void> {
-    if (await this.targets.commit()) await this.model.change({ is_on: true });
-    else this.said.set("not begun: a target is wrong");
+  async begin(): Promise<boolean> {
+    if (await this.targets.commit()) return this.model.change({ is_on: true });
+    this.said.set("not begun: a target is wrong");
+    return false;
   }
 
   async end(): Promise<void> {
@@ -65,7 +66,8 @@ export class CalibrationSession {
   }
 
   async capture(): Promise<void> {
-    if (this.model.view.value.calibration?.is_on) await this.model.capture();
+    const { calibration, pending } = this.model.view.value;
+    if (calibration?.is_on && !pending.includes("capture")) await this.model.capture();
   }
 
   async solve(): Promise<void> {

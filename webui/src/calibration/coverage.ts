@@ -14,7 +14,7 @@ const full_points = 40;
 
 /// Empty cells are missing; others are the fuller the more points they have, the first ones counting most.
 export function tint_of(points: number): Tint {
-  if (points <= 0) return { color: missing_color, alpha: 0.26 };
+  if (points <= 0) return { color: missing_color, alpha: 0.17 };
   const share = Math.min(Math.log1p(points) / Math.log1p(full_points), 1);
   return { color: covered_color, alpha: least_alpha + (most_alpha - least_alpha) * share };
 }

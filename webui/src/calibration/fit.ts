@@ -1,7 +1,7 @@
 import type { Point } from "../scene";
 
 /// Points older than this are elsewhere by now. [s]
-export const nearly_s = 0.6;
+export const nearly_s = 0.4;
 
 /// How well points of one frame fit the picture of another: 1 for the same, less the farther apart, 0 when they must not be drawn over it.
 /// rate_hz  of the camera

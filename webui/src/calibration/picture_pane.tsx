@@ -13,11 +13,15 @@ export function PicturePane({ session }: { session: CalibrationSession }) {
   const { calibration, captured, pending } = view;
   const is_on = calibration?.is_on ?? false;
   const why = why_not_solved(view);
+  const begin = async (): Promise<void> => {
+    // On a telephone the field that is wrong may be out of sight.
+    if (!(await session.begin())) document.querySelector<HTMLElement>('.targets [aria-invalid="true"]')?.focus();
+  };
   return (
     <section ref={pane} class={`at-work ${is_full ? "full" : ""}`} aria-label="Capture">
       <div class="row controls">
         <button type="button" class={is_on ? "" : "primary"} disabled={calibration === null || pending.includes("change")} data-show="begin"
-                onClick={() => void (is_on ? session.end() : session.begin())}>
+                onClick={() => void (is_on ? session.end() : begin())}>
           {is_on ? "End" : "Begin"}
         </button>
         <label class="inline">
@@ -33,9 +37,11 @@ export function PicturePane({ session }: { session: CalibrationSession }) {
                 data-show="solve" onClick={() => void session.solve()}>
           Solve
         </button>
-        <button type="button" class="fill" aria-keyshortcuts="f" aria-pressed={is_full} title="to be read from afar (f)" data-show="full" onClick={() => toggle_full(pane.current!)}>
-          {is_full ? "Small again" : "Large"}
-        </button>
+        {document.fullscreenEnabled && (
+          <button type="button" class="fill" aria-keyshortcuts="f" aria-pressed={is_full} title="to be read from afar (f)" data-show="full" onClick={() => toggle_full(pane.current!)}>
+            {is_full ? "Small again" : "Large"}
+          </button>
+        )}
       </div>
       <VerdictBoard session={session} />
       <div class={`stage-of-picture ${captured !== null ? "captured" : ""}`}>
@@ -47,7 +53,7 @@ export function PicturePane({ session }: { session: CalibrationSession }) {
   );
 }
 
-export function toggle_full(pane: HTMLElement): void {
+function toggle_full(pane: HTMLElement): void {
   if (document.fullscreenElement === null) void pane.requestFullscreen().catch(() => {});   // where it is not allowed, the page stays as it is
   else void document.exitFullscreen();
 }
