@@ -114,12 +114,14 @@ describe("asking", () => {
     const changed = model.change({ is_automatic: false });
     await settle();
     expect(model.view.value.pending).toEqual(["change"]);
+    expect(model.view.value.wanted, "shown as chosen").toEqual({ is_automatic: false });
     await server.answer();   // to the question before it
     expect(model.view.value.calibration!.is_automatic).toBe(true);
     await server.answer();
     expect(await changed).toBe(true);
     expect(model.view.value.calibration!.is_automatic).toBe(false);
     expect(model.view.value.pending).toEqual([]);
+    expect(model.view.value.wanted).toEqual({});
   });
 
   test("what was asked for before a change and comes after it is dropped, too", async () => {

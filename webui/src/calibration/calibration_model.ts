@@ -9,6 +9,8 @@ export interface CalibrationView {
   /// As the server last told it; null before.
   readonly calibration: Calibration | null;
   readonly pending: readonly Action[];
+  /// What was chosen and is on its way, to be shown as chosen.
+  readonly wanted: CalibrationChange;
   /// Why the last thing that was asked for was refused; empty when it was not, or something else was asked for since.
   readonly refusal: string;
   /// Why the server cannot be asked now; it is asked again.
@@ -34,7 +36,7 @@ export const told_ms = 1600;
 /// How it stands with the calibration, asked for while the page is shown. Questions are one at a time, and an answer that was on its way while something was
 /// changed is older than that and dropped; what is asked for goes one after another.
 export class CalibrationModel {
-  readonly view = new Observable<CalibrationView>({ calibration: null, pending: [], refusal: "", trouble: "", captured: null, results: 0 });
+  readonly view = new Observable<CalibrationView>({ calibration: null, pending: [], wanted: {}, refusal: "", trouble: "", captured: null, results: 0 });
   private is_open = false;
   private is_asking = false;
   private changes = 0;
@@ -57,6 +59,7 @@ export class CalibrationModel {
   }
 
   change(change: CalibrationChange): Promise<boolean> {
+    this.update({ wanted: { ...this.view.value.wanted, ...change } });
     return this.act("change", () => this.api.change(change));
   }
 
@@ -113,7 +116,8 @@ export class CalibrationModel {
     ++this.changes;
     const { pending } = this.view.value;
     const at = pending.indexOf(action);
-    this.update({ pending: pending.filter((_, i) => i !== at) });
+    const rest = pending.filter((_, i) => i !== at);
+    this.update({ pending: rest, ...(rest.includes("change") ? {} : { wanted: {} }) });
   }
 
   private async look(): Promise<void> {

@@ -10,7 +10,7 @@ export function PicturePane({ session }: { session: CalibrationSession }) {
   const pane = useRef<HTMLElement>(null);
   const view = useValue(session.model.view);
   const is_full = useIsFull(pane);
-  const { calibration, captured, pending } = view;
+  const { calibration, captured, pending, wanted } = view;
   const is_on = calibration?.is_on ?? false;
   const why = why_not_solved(view);
   const begin = async (): Promise<void> => {
@@ -25,7 +25,7 @@ export function PicturePane({ session }: { session: CalibrationSession }) {
           {is_on ? "End" : "Begin"}
         </button>
         <label class="inline">
-          <input type="checkbox" checked={calibration?.is_automatic ?? false} disabled={calibration === null} data-show="automatic"
+          <input type="checkbox" checked={wanted.is_automatic ?? calibration?.is_automatic ?? false} disabled={calibration === null} data-show="automatic"
                  onChange={(event) => void session.model.change({ is_automatic: event.currentTarget.checked })} />
           capture good views by themselves
         </label>
@@ -122,7 +122,7 @@ function Legend({ session }: { session: CalibrationSession }) {
       <label class="inline">
         <input type="checkbox" checked={outlines} data-show="outlines" onChange={(event) => session.shows_outlines.set(event.currentTarget.checked)} />outlines of views
       </label>
-      {missing !== "" && <span class="where" data-show="missing">hold it {missing.includes(",") ? "at these places, too" : "there, too"}: <b>{missing}</b></span>}
+      {missing !== "" && <span class="where" data-show="missing">not covered yet: <b>{missing}</b> of the picture</span>}
     </div>
   );
 }

@@ -75,15 +75,16 @@ const model_meanings: Readonly<Record<LensModel, string>> = {
 };
 
 export function LensPane({ session }: { session: CalibrationSession }) {
-  const { calibration } = useValue(session.model.view);
+  const { calibration, wanted } = useValue(session.model.view);
+  const chosen = wanted.model ?? calibration?.model;
   return (
     <section class="lens" aria-label="Lens model">
       <header><h2>Lens model</h2></header>
       <fieldset disabled={calibration === null}>
         <legend class="unseen">lens model</legend>
         {lens_models.map((model) => (
-          <label key={model} class={`choice ${calibration?.model === model ? "chosen" : ""}`}>
-            <input type="radio" name="lens-model" value={model} checked={calibration?.model === model} onChange={() => void session.model.change({ model })} />
+          <label key={model} class={`choice ${chosen === model ? "chosen" : ""}`}>
+            <input type="radio" name="lens-model" value={model} checked={chosen === model} onChange={() => void session.model.change({ model })} />
             <span><code>{model}</code><span class="meaning">{model_meanings[model]}</span></span>
           </label>
         ))}

@@ -5,7 +5,7 @@ import type { CalibrationView } from "./calibration_model";
 import { verdict_of, why_not_kept, why_not_solved, with_sigma } from "./verdict";
 
 const view = (part: Partial<Calibration> | null, rest: Partial<CalibrationView> = {}): CalibrationView =>
-  ({ calibration: part === null ? null : { ...idle_calibration, ...part }, pending: [], refusal: "", trouble: "", captured: null, results: 0, ...rest });
+  ({ calibration: part === null ? null : { ...idle_calibration, ...part }, pending: [], wanted: {}, refusal: "", trouble: "", captured: null, results: 0, ...rest });
 const now = (target: string | null, verdict: string, is_captured = false) => ({ frame: 1, target, points: [], verdict, is_captured });
 
 test("the verdict is the frame's, unless something else is to be known first", () => {
