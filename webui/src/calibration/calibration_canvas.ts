@@ -130,13 +130,13 @@ export class CalibrationCanvas {
     context.stroke();
   }
 
-  /// With a dark rim, to be seen on paper as well as on print.
+  /// With a dark rim, to be seen on paper as well as on print; smaller in small pictures, where points lie close together.
   private dot([x, y]: Point, radius: number, color: string, alpha: number): void {
     const { context, density } = this;
     context.globalAlpha = alpha;
     context.setLineDash([]);
     context.beginPath();
-    context.arc(x, y, radius * density, 0, 2 * Math.PI);
+    context.arc(x, y, Math.min(radius * density, this.canvas.width / 220), 0, 2 * Math.PI);
     context.fillStyle = color;
     context.fill();
     context.strokeStyle = "#0c1218";
