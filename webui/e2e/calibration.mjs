@@ -96,7 +96,7 @@ async function main(url, browser, screenshots, { target, model, views: wanted, "
     await page.getByRole("button", { name: "remove target 2" }).click();
     await field(0, "columns").press("Enter");
     await until("the server has one", async () => (await state()).targets.length === 1);
-    assert.equal(await show("targets-state").innerText(), "in use");
+    await until("the page says so", async () => (await show("targets-state").innerText()) === "in use");
   });
 
   await step("a lens model is chosen", async () => {
@@ -154,6 +154,7 @@ async function main(url, browser, screenshots, { target, model, views: wanted, "
     // Nothing comes in between.
     if (await show("automatic").isChecked()) await show("automatic").click();
     await until("it waits", async () => !(await state()).is_automatic);
+    await until("the page has all", async () => (await page.locator("[data-view]").count()) === (await state()).views.length);
     const { views } = await state();
     const last = page.locator(`[data-view="${views.at(-1).id}"]`);
     await last.hover();
@@ -170,7 +171,15 @@ async function main(url, browser, screenshots, { target, model, views: wanted, "
   });
 
   await step("the camera is worked out, with all that tells how good it is", async () => {
+    // Solving ends it, so that no view drops the result.
+    if (!by_hand) await show("automatic").click();
+    await until("it goes on", async () => (await state()).is_automatic === !by_hand);
+    await page.evaluate(() => document.activeElement?.blur());
     await page.keyboard.press("s");
+    await until("it is being worked out, or was", async () => {
+      const { is_solving, is_automatic, result, failure } = await state();
+      return !is_automatic && (is_solving || result !== null || failure !== "");
+    });
     await until("there is a result or a failure", async () => {
       const { is_solving, result, failure } = await state();
       return !is_solving && (result !== null || failure !== "");

@@ -166,14 +166,18 @@ export class MockCalibration {
     const is_inside = points.every(([x, y]) => x >= 0 && y >= 0 && x < width && y < height);
     const found = !place.is_away && is_inside;
     const asked = found ? this.captures.splice(0) : [];
-    const alike = this.views.findIndex((view) => this.distance(view.points, points) < alike_px);
-    let verdict = "no target was found", captured = false;
+    const alike = this.views.find((view) => this.distance(view.points, points) < alike_px);
+    let verdict = `no target found: no ${this.targets[0]}: no place in the image looks like it`, captured = false;
     if (found) {
-      verdict = moves ? "it moves, hold it still" : alike >= 0 ? `it is like view ${alike + 1}` : this.is_automatic ? "captured" : "good, press c to capture it";
-      captured = asked.length > 0 || (!moves && alike < 0 && this.is_automatic);
+      verdict = moves ? "moves: 31 px since the last look" : alike !== undefined ? `like view ${alike.id}` : "new: at rest, and like no other view";
+      captured = asked.length > 0 || (!moves && alike === undefined && this.is_automatic);
     }
-    this.now = { frame, target: found ? this.targets[0] : null, points: found ? points : [], verdict: captured ? "captured" : verdict, is_captured: captured };
-    if (captured) this.views.push({ id: String(++this.count), frame, target: this.targets[0], points, rms_px: null, rejected: "" });
+    if (captured) {
+      this.drop();
+      this.views.push({ id: String(++this.count), frame, target: this.targets[0], points, rms_px: null, rejected: "" });
+      verdict = `captured as view ${this.count}`;
+    }
+    this.now = { frame, target: found ? this.targets[0] : null, points: found ? points : [], verdict, is_captured: captured };
     for (const answer of asked) answer();
   }
 
@@ -209,7 +213,7 @@ export class MockCalibration {
   finish() {
     this.drop();
     if (this.views.length < least_views) {
-      this.failure = `there are ${this.views.length} usable views, at least ${least_views} are needed`;
+      this.failure = `views: are ${this.views.length}, must be at least ${least_views}`;
       return;
     }
     const random = numbers_from(this.count);
@@ -264,11 +268,11 @@ export class MockCalibration {
 
   /// The next frame that shows it.
   async capture() {
-    if (!this.is_on) throw new Refused(409, "calibration is off");
+    if (!this.is_on) throw new Refused(409, "calibration: is not on");
     await new Promise((done, fail) => {
       const late = setTimeout(() => {
         this.captures.splice(this.captures.indexOf(answer), 1);
-        fail(new Refused(409, "no target was found in the next frames"));
+        fail(new Refused(409, "view: was not captured: no target found"));
       }, 1500);
       const answer = () => {
         clearTimeout(late);

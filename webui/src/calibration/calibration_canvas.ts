@@ -69,7 +69,7 @@ export class CalibrationCanvas {
     if (session.shows_coverage.value && (calibration.is_on || calibration.views.length > 0)) this.draw_coverage(calibration);
     if (session.shows_outlines.value) for (const view of calibration.views) this.draw_outline(view, at);
     const fit = this.draw_now(calibration, at);
-    const captured = calibration.views[(session.model.view.value.captured ?? 0) - 1];
+    const captured = calibration.views.find(({ id }) => id === session.model.view.value.captured);
     if (captured !== undefined) this.draw_points(captured.points, at, captured_color, 1);
     const pointed = calibration.views.find(({ id }) => id === session.pointed.value);
     if (pointed !== undefined) this.draw_points(pointed.points, at, pointed_color, 1);

@@ -181,7 +181,7 @@ describe("doing", () => {
     const { server, clock, model } = await opened();
     server.state = { ...idle_calibration, is_on: true, views: [some_view("1"), some_view("2")] };
     await clock.pass(slow_ms);
-    expect(model.view.value.captured).toBe(2);
+    expect(model.view.value.captured).toBe("2");
     await clock.pass(told_ms);
     expect(model.view.value.captured).toBeNull();
     await model.forget("1");

@@ -15,8 +15,8 @@ export interface CalibrationView {
   readonly refusal: string;
   /// Why the server cannot be asked now; it is asked again.
   readonly trouble: string;
-  /// The view that was captured just now, counted from 1; null a moment later.
-  readonly captured: number | null;
+  /// The view that was captured just now; null a moment later.
+  readonly captured: string | null;
   /// Grows with each other result.
   readonly results: number;
 }
@@ -149,13 +149,13 @@ export class CalibrationModel {
     this.update({ calibration, results: this.view.value.results + (is_other ? 1 : 0) });
     if (before === null) return;
     const known = new Set(before.views.map(({ id }) => id));
-    const fresh = calibration.views.flatMap(({ id }, i) => (known.has(id) ? [] : [i + 1])).at(-1);
-    if (fresh !== undefined) this.tell_captured(fresh);
+    const fresh = calibration.views.filter(({ id }) => !known.has(id)).at(-1);
+    if (fresh !== undefined) this.tell_captured(fresh.id);
   }
 
-  private tell_captured(number: number): void {
+  private tell_captured(id: string): void {
     this.cancel_told?.();
-    this.update({ captured: number });
+    this.update({ captured: id });
     this.cancel_told = this.clock.after(told_ms, () => this.update({ captured: null }));
   }
 

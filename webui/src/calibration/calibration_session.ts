@@ -72,8 +72,11 @@ export class CalibrationSession {
 
   async solve(): Promise<void> {
     const why = why_not_solved(this.model.view.value);
-    if (why !== "") this.said.set(`not worked out: ${why}`);
-    else await this.model.solve();
+    if (why !== "") return this.said.set(`not worked out: ${why}`);
+    const { calibration } = this.model.view.value;
+    // Another view drops the result, and the target may still be in sight.
+    if (calibration?.is_on && calibration.is_automatic) void this.model.change({ is_automatic: false });
+    await this.model.solve();
   }
 
   async save(): Promise<void> {

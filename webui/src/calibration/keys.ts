@@ -2,7 +2,7 @@ import type { CalibrationSession } from "./calibration_session";
 
 /// What keys do, as the page's help tells it.
 export const key_help: readonly (readonly [string, string])[] = [
-  ["c", "capture now"], ["s", "solve"], ["Ctrl+S", "save and use"], ["f", "large, and small again"], ["space", "freeze the picture"],
+  ["c", "capture now"], ["s", "solve, and capture no more by themselves"], ["Ctrl+S", "save and use"], ["f", "large, and small again"], ["space", "freeze the picture"],
 ];
 
 /// Keys of the whole page; returns whether the key was one of them.

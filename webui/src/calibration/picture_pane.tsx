@@ -33,7 +33,7 @@ export function PicturePane({ session }: { session: CalibrationSession }) {
                 onClick={() => void session.capture()}>
           Capture now
         </button>
-        <button type="button" class={is_on && (calibration?.views.length ?? 0) > 0 ? "primary" : ""} disabled={why !== ""} aria-keyshortcuts="s" title={why || "work the camera out from the views (s)"}
+        <button type="button" class={is_on && (calibration?.views.length ?? 0) > 0 ? "primary" : ""} disabled={why !== ""} aria-keyshortcuts="s" title={why || "work the camera out from the views, and capture no more by themselves (s)"}
                 data-show="solve" onClick={() => void session.solve()}>
           Solve
         </button>
@@ -75,7 +75,7 @@ const long_verdict = 30;
 
 function VerdictBoard({ session }: { session: CalibrationSession }) {
   const view = useValue(session.model.view);
-  const { text, tone } = verdict_of(view);
+  const { text, detail, tone } = verdict_of(view);
   const [spoken, set_spoken] = useState("");
   useEffect(() => {
     const timer = setTimeout(() => set_spoken(text), tone === "good" ? 0 : spoken_after_ms);
@@ -86,6 +86,7 @@ function VerdictBoard({ session }: { session: CalibrationSession }) {
   return (
     <div class={`verdict ${tone}`} data-tone={tone}>
       <p class={text.length > long_verdict ? "long" : ""} aria-hidden="true" data-show="verdict">{text}</p>
+      <p class="detail" aria-hidden="true" data-show="verdict-detail">{detail}</p>
       <p class="so-far">
         <b data-show="view-count">{views}</b> {views === 1 ? "view" : "views"}
         <span> · <b data-show="share">{Math.round(100 * (calibration?.coverage.share ?? 0))}</b>&nbsp;% covered</span>

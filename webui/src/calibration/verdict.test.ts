@@ -10,10 +10,11 @@ const now = (target: string | null, verdict: string, is_captured = false) => ({ 
 
 test("the verdict is the frame's, unless something else is to be known first", () => {
   const on = { is_on: true, now: now("dots:7x7:0.04:0.01", "it moves") };
-  expect(verdict_of(view(on))).toEqual({ text: "it moves", tone: "wait" });
-  expect(verdict_of(view({ ...on, now: now(null, "no target was found") })).tone).toBe("none");
+  expect(verdict_of(view(on))).toEqual({ text: "it moves", detail: "", tone: "wait" });
+  expect(verdict_of(view({ ...on, now: now(null, "no target found: no dots:7x7:0.04:0.01: no frame") })))
+    .toEqual({ text: "no target found", detail: "no dots:7x7:0.04:0.01: no frame", tone: "none" });
   expect(verdict_of(view({ ...on, now: now("dots:7x7:0.04:0.01", "captured", true) })).tone).toBe("good");
-  expect(verdict_of(view(on, { captured: 4 }))).toEqual({ text: "view 4 captured", tone: "good" });
+  expect(verdict_of(view(on, { captured: "4" }))).toEqual({ text: "view 4 captured", detail: "", tone: "good" });
   for (const idle of [view(null), view({}), view({ is_on: true }), view({ ...on, is_solving: true }), view(on, { trouble: "away" })]) expect(verdict_of(idle).tone).toBe("idle");
 });
 

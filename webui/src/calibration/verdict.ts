@@ -5,11 +5,19 @@ export type Tone = "good" | "wait" | "none" | "idle";
 
 export interface Verdict {
   readonly text: string;
+  /// More of it, for those who are near enough; may be empty.
+  readonly detail: string;
   readonly tone: Tone;
 }
 
-/// What is to be read from where the target is held: few words.
-export function verdict_of({ calibration, captured, trouble }: CalibrationView): Verdict {
+/// What is to be read from where the target is held: few words. The server says the short of it before a colon.
+export function verdict_of(view: CalibrationView): Verdict {
+  const { text, tone } = whole_verdict(view);
+  const colon = text.indexOf(": ");
+  return colon < 0 ? { text, detail: "", tone } : { text: text.slice(0, colon), detail: text.slice(colon + 2), tone };
+}
+
+function whole_verdict({ calibration, captured, trouble }: CalibrationView): { text: string; tone: Tone } {
   if (trouble !== "") return { text: "no answer from the robot", tone: "idle" };
   if (calibration === null) return { text: "waiting for the robot", tone: "idle" };
   if (captured !== null) return { text: `view ${captured} captured`, tone: "good" };

@@ -21,14 +21,14 @@ export function ViewsPane({ session }: { session: CalibrationSession }) {
         ? <p class="faint">Hold the target still, then move it: near and far, tilted by 20° to 45°, and into each corner of the picture. Ten views or more are good.</p>
         : (
           <ul data-show="views" onPointerLeave={point(null)}>
-            {views.map(({ id, frame, target, points, rms_px, rejected: why }, i) => (
+            {views.map(({ id, frame, target, points, rms_px, rejected: why }) => (
               <li key={id} data-view={id} class={`${id === pointed ? "chosen" : ""} ${why === "" ? "" : "rejected"}`} onPointerEnter={point(id)} onFocusIn={point(id)} onFocusOut={point(null)}>
                 <button type="button" class="view" title={`frame ${frame}, ${target}; its points are shown in the picture`} onClick={point(id)}>
-                  <b>{i + 1}</b>
+                  <b>{id}</b>
                   <span class="number">{rms_px === null ? <span class="faint">{points.length} points</span> : `${fixed(rms_px, 2)}\u00a0px`}</span>
                   {why !== "" && <span class="why-not">thrown out: {why}</span>}
                 </button>
-                <button type="button" class="plain" aria-label={`forget view ${i + 1}`} onClick={() => void session.forget(id)}>forget</button>
+                <button type="button" class="plain" aria-label={`forget view ${id}`} onClick={() => void session.forget(id)}>forget</button>
               </li>
             ))}
           </ul>
