@@ -33,7 +33,7 @@ if(NOT webui_reason)
 endif()
 
 if(TASSILO_TESTS)
-  foreach(test unit browser colors)
+  foreach(test unit browser colors calibration)
     if(webui_reason)
       add_test(NAME webui.${test} COMMAND ${CMAKE_COMMAND} -E echo "skipped: ${webui_reason}")
       set_tests_properties(webui.${test} PROPERTIES SKIP_REGULAR_EXPRESSION "^skipped:")
@@ -45,7 +45,9 @@ if(TASSILO_TESTS)
       ${NODE_EXECUTABLE} mock/server.mjs --port 0 --pages ${TASSILO_WEBUI_DIR} WORKING_DIRECTORY ${webui_source})
     add_test(NAME webui.colors COMMAND ${NODE_EXECUTABLE} e2e/colors.mjs --screenshots ${PROJECT_BINARY_DIR}/webui_screenshots --
       ${NODE_EXECUTABLE} mock/server.mjs --port 0 --pages ${TASSILO_WEBUI_DIR} WORKING_DIRECTORY ${webui_source})
+    add_test(NAME webui.calibration COMMAND ${NODE_EXECUTABLE} e2e/calibration.mjs --screenshots ${PROJECT_BINARY_DIR}/webui_screenshots --
+      ${NODE_EXECUTABLE} mock/server.mjs --port 0 --pages ${TASSILO_WEBUI_DIR} WORKING_DIRECTORY ${webui_source})
     # A browser is several processes; beside other tests a machine of two cores shows it all too slowly.
-    set_tests_properties(webui.browser webui.colors PROPERTIES SKIP_RETURN_CODE 77 PROCESSORS 2 TIMEOUT 240)
+    set_tests_properties(webui.browser webui.colors webui.calibration PROPERTIES SKIP_RETURN_CODE 77 PROCESSORS 2 TIMEOUT 240)
   endif()
 endif()

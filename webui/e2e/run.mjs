@@ -49,20 +49,20 @@ function start_server([program, ...rest]) {
   });
 }
 
-export async function until(what, holds) {
-  const end = Date.now() + patience_ms;
+export async function until(what, holds, patience = patience_ms) {
+  const end = Date.now() + patience;
   for (;;) {
     const result = await holds();
     if (result) return result;
-    if (Date.now() > end) throw new Error(`waited ${patience_ms} ms in vain: ${what}`);
+    if (Date.now() > end) throw new Error(`waited ${patience} ms in vain: ${what}`);
     await new Promise((done) => setTimeout(done, 50));
   }
 }
 
-/// Runs `main(url, browser, screenshots)` as the command line says, and sets the exit code.
-export async function run(name, main) {
+/// Runs `main(url, browser, screenshots, options)` as the command line says, and sets the exit code. `own` are options of this test, as of parseArgs.
+export async function run(name, main, own = {}) {
   const { values: options, positionals: command } = parseArgs({
-    options: { screenshots: { type: "string", default: "" }, browser: { type: "string", default: "" }, url: { type: "string", default: "" } },
+    options: { screenshots: { type: "string", default: "" }, browser: { type: "string", default: "" }, url: { type: "string", default: "" }, ...own },
     allowPositionals: true,
   });
   if ((options.url === "") === (command.length === 0)) {
@@ -83,7 +83,7 @@ export async function run(name, main) {
       args: ["--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-component-update", "--disable-sync", "--no-first-run",
              "--disable-dev-shm-usage"],
     });
-    await main(server.url, browser, options.screenshots);
+    await main(server.url, browser, options.screenshots, options);
     console.log("all steps passed");
   } catch (error) {
     console.error(error);

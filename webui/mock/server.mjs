@@ -8,6 +8,7 @@ import path from "node:path";
 import { fileURLToPath } from "node:url";
 import { parseArgs } from "node:util";
 import { WebSocketServer } from "ws";
+import { MockCalibration } from "./calibration.mjs";
 import { MockTraining } from "./training.mjs";
 
 const here = path.dirname(fileURLToPath(import.meta.url));
@@ -29,6 +30,7 @@ const filed = (option) => robot_file[option.key] ?? option.default;
 for (const option of every_option.values()) option.value = filed(option);
 
 const training = new MockTraining();
+const calibration = new MockCalibration();
 const state = { frame: 0, taken_over: 0, sent: 0, dropped: 0 };
 
 const recording = { on: false, finishing: false, folder: "/home/robot/recordings", name: "", parts: 0, seconds: 0, frames: 0, bytes: 0, dropped: 0, trouble: "" };
@@ -116,7 +118,12 @@ function is_own_page({ headers }) {
 async function handle(request, response) {
   if (!is_own_page(request)) return answer(response, 403, "the request comes from a page elsewhere", "text/plain");
   const { pathname, searchParams } = new URL(request.url, "http://mock");
-  if (pathname.startsWith("/api/training")) return answer_training(request, response, pathname.slice("/api/training".length), searchParams);
+  if (pathname.startsWith("/api/training")) {
+    return answer_part(response, "application/octet-stream", async () => training.answer(request.method, pathname.slice("/api/training".length), searchParams, await body_of(request)));
+  }
+  if (pathname.startsWith("/api/calibration")) {
+    return answer_part(response, "image/png", async () => calibration.answer(request.method, pathname.slice("/api/calibration".length), await body_of(request)));
+  }
   if (pathname === "/api/state" && request.method === "GET") return answer(response, 200, JSON.stringify(server_state()));
   if (pathname === "/api/recording" && request.method === "GET") return answer(response, 200, JSON.stringify(recording_now()));
   if (pathname === "/api/recording" && request.method === "PUT") {
@@ -148,11 +155,12 @@ async function handle(request, response) {
   return answer(response, 200, await readFile(file), types[path.extname(file)] ?? "application/octet-stream");
 }
 
-async function answer_training(request, response, rest, query) {
+/// Texts are JSON, bytes of `type`; null: there is no such request.
+async function answer_part(response, type, ask) {
   try {
-    const said = training.answer(request.method, rest, query, await body_of(request));
+    const said = await ask();
     if (said === null) return answer(response, 404, "not found", "text/plain");
-    return answer(response, 200, said, typeof said === "string" ? "application/json" : "application/octet-stream");
+    return answer(response, 200, said, typeof said === "string" ? "application/json" : type);
   } catch (error) {
     if (error.status === undefined) throw error;
     return answer(response, error.status, error.message, "text/plain");
@@ -207,7 +215,7 @@ setInterval(() => {
   }
   publish("/ws/scene", JSON.stringify(scene_now()));
   publish("/ws/picture", numbered(pictures[state.frame % pictures.length], state.frame));
-  publish("/ws/frame", training.frame(state.frame, state.frame / rate_hz));
+  publish("/ws/frame", calibration.frame(training.frame(state.frame, state.frame / rate_hz), state.frame));
 }, 1000 / rate_hz);
 
 server.listen(Number(options.port), "127.0.0.1", () => console.log(`http://127.0.0.1:${server.address().port}/`));

@@ -1,4 +1,5 @@
 import { useEffect, useState } from "preact/hooks";
+import { CalibrationPage } from "./calibration/calibration_page";
 import { ColorsPage } from "./colors/colors_page";
 import { LiveView } from "./live/live_view";
 import { changed_keys } from "./stages/model";
@@ -10,6 +11,7 @@ const views = [
   { id: "live", title: "Live" },
   { id: "stages", title: "Stages" },
   { id: "colors", title: "Colors" },
+  { id: "calibration", title: "Calibration" },
 ] as const;
 type View = (typeof views)[number]["id"];
 
@@ -38,6 +40,7 @@ export function App({ session }: { session: Session }) {
               {title}
               {id === "stages" && <ChangedBadge session={session} />}
               {id === "colors" && <UnsavedBadge session={session} />}
+              {id === "calibration" && <UnsavedResultBadge session={session} />}
             </a>
           ))}
         </nav>
@@ -55,7 +58,10 @@ function Content({ session, view }: { session: Session; view: View }) {
   const lost = useValue(session.condition).tone === "bad";
   return (
     <main class={lost ? "old" : undefined} data-show="content">
-      {view === "live" ? <LiveView session={session} /> : view === "stages" ? <StagesPage session={session} /> : <ColorsPage session={session} />}
+      {view === "live" && <LiveView session={session} />}
+      {view === "stages" && <StagesPage session={session} />}
+      {view === "colors" && <ColorsPage session={session} />}
+      {view === "calibration" && <CalibrationPage session={session} />}
     </main>
   );
 }
@@ -68,7 +74,16 @@ function ChangedBadge({ session }: { session: Session }) {
 
 function UnsavedBadge({ session }: { session: Session }) {
   const { training, is_saved } = useValue(session.colors.training.view);
-  return training === null || is_saved ? null : <span class="badge" role="img" aria-label="not saved" title="not saved">●</span>;
+  return training === null || is_saved ? null : <NotSaved />;
+}
+
+function UnsavedResultBadge({ session }: { session: Session }) {
+  const { calibration } = useValue(session.calibration.model.view);
+  return calibration === null || calibration.result === null || calibration.file.is_saved ? null : <NotSaved />;
+}
+
+function NotSaved() {
+  return <span class="badge" role="img" aria-label="not saved" title="not saved">●</span>;
 }
 
 function ConditionChip({ session }: { session: Session }) {

@@ -1,3 +1,4 @@
+import { CalibrationSession } from "./calibration/calibration_session";
 import { ColorsSession } from "./colors/colors_session";
 import { Channel, browser_world } from "./link/channel";
 import { type Api, server_api, type ServerState } from "./link/api";
@@ -31,6 +32,7 @@ export class Session {
   readonly condition = new Observable<Condition>({ tone: "warning", text: "connecting" });
   readonly stages: StagesModel;
   readonly colors = new ColorsSession(this.live.frozen);
+  readonly calibration = new CalibrationSession(this.live.frozen);
   readonly recording = new RecordingModel();
   private trouble = "";
   private pictures_wanted = true;
@@ -86,6 +88,7 @@ export class Session {
     this.scene_channel.retry();
     this.picture_channel.retry();
     this.colors.pictures.retry();
+    this.calibration.retry();
   }
 
   toggle_freeze(): void {

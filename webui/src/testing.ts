@@ -1,5 +1,6 @@
 import type { ColorTable } from "./colors/classify";
 import { color_classes } from "./colors/color_class";
+import type { Calibration, View } from "./link/calibration_api";
 import type { YuvFrame } from "./link/frame_bytes";
 import type { Scene } from "./scene";
 
@@ -52,4 +53,15 @@ export function random_frame(seed: number, width: number, height: number): YuvFr
   const fill = (length: number): Uint8Array => Uint8Array.from({ length }, random);
   const chroma = Math.ceil(width / 2) * height;
   return { width, height, range: seed % 2 === 0 ? "limited" : "full", frame: seed, t: seed / 20, y: fill(width * height), u: fill(chroma), v: fill(chroma) };
+}
+
+/// Nothing has begun yet.
+export const idle_calibration: Calibration = {
+  is_on: false, is_automatic: true, is_solving: false, targets: ["dots:7x7:0.04:0.01"], model: "division", width: 640, height: 480, now: null, views: [],
+  coverage: { columns: 4, rows: 3, points: new Array<number>(12).fill(0), share: 0 }, result: null, failure: "",
+  file: { camera: "camera.yaml", refusal: "", is_saved: false },
+};
+
+export function some_view(id: string): View {
+  return { id, frame: Number(id), target: "dots:7x7:0.04:0.01", points: [[10, 10], [20, 10], [20, 30]], rms_px: null, rejected: "" };
 }

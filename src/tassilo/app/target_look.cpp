@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include "tassilo/calibrate/checkerboard.h"
+#include "tassilo/calibrate/find_target.h"
 
 namespace tassilo {
 

@@ -8,8 +8,6 @@
 #include <numbers>
 
 #include "tassilo/base/contract.h"
-#include "tassilo/calibrate/april_grid.h"
-#include "tassilo/calibrate/dot_grid.h"
 #include "tassilo/calibrate/internal/grid_walk.h"
 #include "tassilo/calibrate/internal/image_filters.h"
 #include "tassilo/calibrate/internal/saddle_fit.h"
@@ -230,18 +228,6 @@ TargetSearch find_checkerboard(ByteView image, const Target& target) {
     return {std::move(view), {}};
   }
   return nearest;
-}
-
-TargetSearch find_target(ByteView image, const Target& target) {
-  switch (target.kind) {
-    case TargetKind::checkerboard:
-      return find_checkerboard(image, target);
-    case TargetKind::april_grid:
-      return find_april_grid(image, target);
-    case TargetKind::dots:
-      break;
-  }
-  return find_dot_grid(image, target);
 }
 
 }  // namespace tassilo

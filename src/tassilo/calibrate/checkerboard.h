@@ -20,7 +20,4 @@ namespace tassilo {
 ///          centres of circular features", ISPRS 1987, for the gradients; own.
 TargetSearch find_checkerboard(ByteView image, const Target& target);
 
-/// `find_dot_grid`, `find_checkerboard` or `find_april_grid`, by the target's kind.
-TargetSearch find_target(ByteView image, const Target& target);
-
 }  // namespace tassilo

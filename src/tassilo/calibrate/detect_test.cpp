@@ -5,7 +5,7 @@
 #include <string>
 
 #include "tassilo/base/error.h"
-#include "tassilo/calibrate/checkerboard.h"
+#include "tassilo/calibrate/find_target.h"
 #include "tassilo/calibrate/dot_grid.h"
 #include "tassilo/calibrate/internal/grid_walk.h"
 #include "tassilo/calibrate/test_targets.h"

@@ -85,9 +85,12 @@ export async function ask<T>(path: string, init: RequestInit = {}): Promise<T> {
   throw new Refused(response.status, (await response.text()).trim() || `the server answers ${response.status}`);
 }
 
+export function with_json(method: string, body: unknown): RequestInit {
+  return { method, headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) };
+}
+
 export const server_api: Api = {
   state: () => ask("/api/state"),
   stages: () => ask("/api/stages"),
-  change: (change) =>
-    ask("/api/stages", { method: "PUT", headers: { "Content-Type": "application/json" }, body: JSON.stringify(change) }),
+  change: (change) => ask("/api/stages", with_json("PUT", change)),
 };

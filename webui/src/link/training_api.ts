@@ -1,7 +1,7 @@
 import type { ColorTable, Interval } from "../colors/classify";
 import { type ColorClass, color_classes } from "../colors/color_class";
 import type { Draft, Sample } from "../colors/draft";
-import { ask, type Option, patience_ms, Refused } from "./api";
+import { ask, type Option, patience_ms, Refused, with_json } from "./api";
 import { parse_frame, type YuvFrame } from "./frame_bytes";
 
 // The requests of color training; public/openapi.yaml documents them.
@@ -112,10 +112,6 @@ export function result_of(told: ToldResult): Result {
   const { seen } = told;
   if (seen !== null && seen.brightness.length !== 256) throw new Error(`brightness: has ${seen.brightness.length} numbers, must have 256`);
   return { ...told, table: table_of(told.table), seen: seen === null ? null : { ...seen, density: bytes_of(seen.density, "density") } };
-}
-
-function with_json(method: string, body: unknown): RequestInit {
-  return { method, headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) };
 }
 
 async function ask_frame(path: string): Promise<YuvFrame> {
