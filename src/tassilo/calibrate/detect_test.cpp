@@ -5,8 +5,8 @@
 #include <string>
 
 #include "tassilo/base/error.h"
-#include "tassilo/calibrate/find_target.h"
 #include "tassilo/calibrate/dot_grid.h"
+#include "tassilo/calibrate/find_target.h"
 #include "tassilo/calibrate/internal/grid_walk.h"
 #include "tassilo/calibrate/test_targets.h"
 

@@ -1,4 +1,5 @@
 #include "tassilo/calibrate/mount_from_target.h"
+#include "tassilo/calibrate/find_target.h"
 
 #include <gtest/gtest.h>
 
