@@ -86,7 +86,7 @@ function VerdictBoard({ session }: { session: CalibrationSession }) {
   return (
     <div class={`verdict ${tone}`} data-tone={tone}>
       <p class={text.length > long_verdict ? "long" : ""} aria-hidden="true" data-show="verdict">{text}</p>
-      <p class="detail" aria-hidden="true" data-show="verdict-detail">{detail}</p>
+      {detail !== "" && <p class="detail" aria-hidden="true" data-show="verdict-detail" title={detail}>{detail}</p>}
       <p class="so-far">
         <b data-show="view-count">{views}</b> {views === 1 ? "view" : "views"}
         <span> · <b data-show="share">{Math.round(100 * (calibration?.coverage.share ?? 0))}</b>&nbsp;% covered</span>

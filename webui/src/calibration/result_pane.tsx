@@ -105,7 +105,9 @@ function Residuals({ session }: { session: CalibrationSession }) {
   if ("why" in shown) return <p class="error" data-show="no-residuals">no picture of the residuals: {shown.why}</p>;
   return (
     <figure class="residuals">
-      <img src={shown.address} alt="residuals: how far each point lies from where the camera shows it" data-show="residuals" />
+      <a href={shown.address} target="_blank" rel="noopener" title="in full size">
+        <img src={shown.address} alt="residuals: how far each point lies from where the camera shows it" data-show="residuals" />
+      </a>
       <figcaption class="under faint">Residuals, enlarged. They should look like noise: arrows that go together tell of a lens model that does not fit, or of a bent target.</figcaption>
     </figure>
   );
