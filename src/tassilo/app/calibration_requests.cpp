@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <utility>
@@ -54,7 +55,7 @@ json result_json(const Intrinsics& result) {
       {"rms_px", result.rms_px},
       {"cross_validated_rms_px", result.cross_validated_rms_px ? json(*result.cross_validated_rms_px) : json(nullptr)},
       // 0 stands for a camera of which no direction could be followed.
-      {"worst_sigma_px", result.worst_sigma_px > 0 ? json(result.worst_sigma_px) : json(nullptr)},
+      {"worst_sigma_px", std::isfinite(result.worst_sigma_px) ? json(result.worst_sigma_px) : json(nullptr)},
       {"values", std::move(values)},
       {"warnings", result.warnings}};
 }

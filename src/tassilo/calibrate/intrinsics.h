@@ -89,7 +89,7 @@ struct Intrinsics {
   /// fitted. Nothing with too few views for it. [px]
   std::optional<double> cross_validated_rms_px;
   /// The largest standard deviation of where a direction shows, over a grid of places up to the image's corners and but
-  /// for a rotation of the camera as a whole; what `warnings` judge a lens beyond the covered part by. [px]
+  /// for a rotation of the camera as a whole; infinite when the lens cannot be inverted at one of them. [px]
   double worst_sigma_px = 0;
   int frame_places = 0;         ///< Places on the sides of frames that were used.
   std::string frames_rejected;  ///< Why they were not, where there were some. Lower-case, no full stop.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <numbers>
 
 #include "tassilo/calibrate/internal/lens.h"
@@ -96,7 +97,7 @@ double worst_sigma(ImageSize size, LensModel model, std::span<const double> came
   for (int r = 0; r < rows; ++r)
     for (int c = 0; c < columns; ++c) {
       const auto ray = unproject(exact, {c * (size.width - 1.) / (columns - 1), r * (size.height - 1.) / (rows - 1)});
-      if (!ray) continue;
+      if (!ray) return std::numeric_limits<double>::infinity();
       bool exists = true;
       for (std::size_t k = 0; k < values.size() && exists; ++k) {
         const auto moved = slope(size, model, values, k, *ray);
@@ -110,11 +111,9 @@ double worst_sigma(ImageSize size, LensModel model, std::span<const double> came
         if ((exists = high && low))
           by_turn.block<2, 1>(count, axis) = Eigen::Vector2d(high->x - low->x, high->y - low->y) / (2 * step);
       }
-      if (exists) count += 2;
+      if (!exists) return std::numeric_limits<double>::infinity();
+      count += 2;
     }
-  by_camera.conservativeResize(count, Eigen::NoChange);
-  by_turn.conservativeResize(count, Eigen::NoChange);
-  if (count < 6) return 0;
   const Eigen::MatrixXd left = by_camera - by_turn * by_turn.colPivHouseholderQr().solve(by_camera);
   double worst = 0;
   for (Eigen::Index i = 0; i < count; i += 2) {
@@ -132,6 +131,9 @@ std::vector<std::string> warnings_of(const Intrinsics& result) {
                   " views: too few to tell a wrong one or to check the result, should be at least " +
                   std::to_string(kEnoughViews) + ", tilted differently and all over the image");
   const Coverage& coverage = result.coverage;
+  if (!std::isfinite(result.worst_sigma_px))
+    out.push_back(
+        "the lens turns back on itself before the image's corners: more radial terms than the views determine");
   if (!result.frames_rejected.empty()) out.push_back("frames of dots are not used: " + result.frames_rejected);
   if (coverage.share < kEnoughShare)
     out.push_back("points cover " + text("%.1f", 100 * coverage.share) + " % of the image, should be at least " +
