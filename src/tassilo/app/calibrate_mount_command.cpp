@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -12,6 +11,7 @@
 
 #include "tassilo/app/calibration_views.h"
 #include "tassilo/app/commands.h"
+#include "tassilo/app/number_list.h"
 #include "tassilo/app/residual_picture.h"
 #include "tassilo/app/robot_setup.h"
 #include "tassilo/app/run.h"
@@ -46,17 +46,7 @@ struct MountArguments {
 TargetPlace place_from(const std::string& text) {
   TargetPlace place;
   const std::array values{&place.x, &place.y, &place.yaw, &place.height};
-  std::size_t count = 0;
-  bool good = true;
-  for (std::size_t begin = 0; good && begin <= text.size(); ++count) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    double value = NAN;
-    const auto [rest, error] = std::from_chars(text.data() + begin, text.data() + end, value);
-    good = count < values.size() && error == std::errc{} && rest == text.data() + end && std::isfinite(value);
-    if (good) *values[count] = value;
-    begin = end + 1;
-  }
-  if (!good || count < 3)
+  if (!read_numbers(text, values, 3))
     throw CLI::ValidationError("--at", "is " + text + ", must be X,Y,YAW or X,Y,YAW,HEIGHT in m and rad");
   try {
     place.check();

@@ -12,6 +12,7 @@
 #include "tassilo/base/error.h"
 #include "tassilo/calibrate/test_targets.h"
 #include "tassilo/files/camera_file.h"
+#include "tassilo/files/test_folder.h"
 #include "tassilo/files/text.h"
 
 namespace tassilo {
@@ -20,21 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::StartsWith;
-
-class Folder {
- public:
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "tassilo_calibration_XXXXXX").string();
-    path_ = mkdtemp(name.data());
-  }
-  ~Folder() { fs::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  fs::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  fs::path path_;
-};
 
 const CameraModel kCamera{.name = "eye",
                           .width = 320,
@@ -224,7 +210,7 @@ TEST(CalibrationSession, FramesOfAnotherSizeAreNoViews) {
 }
 
 TEST(CalibrationSession, GivesTheTrueCameraAndSavesIt) {
-  const Folder folder;
+  const TestFolder folder;
   const fs::path file = folder / "camera.yaml";
   CameraModel wrong = kCamera;
   wrong.fx = wrong.fy = 250;
@@ -293,7 +279,7 @@ TEST(CalibrationSession, GivesTheTrueCameraAndSavesIt) {
 }
 
 TEST(CalibrationSession, ReplacesNoFileThatItCannotRead) {
-  const Folder folder;
+  const TestFolder folder;
   CalibrationSession none("");
   EXPECT_THAT(none.state().refusal, HasSubstr("names no `camera:`"));
   const fs::path file = folder / "camera.yaml";

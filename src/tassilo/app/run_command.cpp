@@ -1,5 +1,4 @@
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -9,6 +8,7 @@
 
 #include "tassilo/app/boundary_steps.h"
 #include "tassilo/app/commands.h"
+#include "tassilo/app/number_list.h"
 #include "tassilo/app/recorder.h"
 #include "tassilo/app/run.h"
 
@@ -17,17 +17,7 @@ std::optional<StartPose> start_pose_from(const std::string& text) {
   if (text.empty()) return std::nullopt;
   StartPose pose;
   const std::array values{&pose.x, &pose.y, &pose.theta, &pose.sigma_xy, &pose.sigma_theta};
-  std::size_t count = 0;
-  bool good = true;
-  for (std::size_t begin = 0; good && begin <= text.size(); ++count) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    double value = NAN;
-    const auto [rest, error] = std::from_chars(text.data() + begin, text.data() + end, value);
-    good = count < values.size() && error == std::errc{} && rest == text.data() + end && std::isfinite(value);
-    if (good) *values[count] = value;
-    begin = end + 1;
-  }
-  if (!good || count < 3 || !(pose.sigma_xy > 0) || !(pose.sigma_theta > 0) ||
+  if (!read_numbers(text, values, 3) || !(pose.sigma_xy > 0) || !(pose.sigma_theta > 0) ||
       std::abs(pose.theta) > 2 * std::numbers::pi)
     throw CLI::ValidationError(
         "--start-pose",

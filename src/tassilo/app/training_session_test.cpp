@@ -12,6 +12,7 @@
 #include "tassilo/app/frame_bytes.h"
 #include "tassilo/app/training.h"
 #include "tassilo/base/error.h"
+#include "tassilo/files/test_folder.h"
 #include "tassilo/files/text.h"
 
 namespace tassilo {
@@ -19,22 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
-
-/// A folder that is gone with the test.
-class Folder {
- public:
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "tassilo_training_XXXXXX").string();
-    path_ = mkdtemp(name.data());
-  }
-  ~Folder() { fs::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  fs::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  fs::path path_;
-};
 
 /// Left half one color, right half another, with a little noise.
 std::shared_ptr<const std::string> picture(std::int64_t index) {
@@ -71,7 +56,7 @@ std::string message_of(const std::function<void()>& act) {
 }
 
 TEST(TrainingSession, ADraftIsTrainedSavedAndReadBack) {
-  const Folder folder;
+  const TestFolder folder;
   const TrainingFiles files = training_files(folder / "colors.yaml", {});
   ColorTable table;
   {
@@ -118,7 +103,7 @@ TEST(TrainingSession, ADraftIsTrainedSavedAndReadBack) {
 }
 
 TEST(TrainingSession, FormerTablesComeBack) {
-  const Folder folder;
+  const TestFolder folder;
   const TrainingFiles files = training_files(folder / "colors.yaml", {});
   TrainingSession session(files, ColorRange::limited);
   const auto image = session.add_image(picture(1));
@@ -138,7 +123,7 @@ TEST(TrainingSession, FormerTablesComeBack) {
 }
 
 TEST(TrainingSession, NobodysWorkIsUndoneByAnother) {
-  const Folder folder;
+  const TestFolder folder;
   const TrainingFiles files = training_files(folder / "colors.yaml", folder / "mine.yaml");
   TrainingSession session(files, ColorRange::limited);
   const auto image = session.add_image(picture(1));
@@ -164,7 +149,7 @@ TEST(TrainingSession, NobodysWorkIsUndoneByAnother) {
 
 // What could not be read is not written over.
 TEST(TrainingSession, ABrokenSamplesFileStaysAsItIs) {
-  const Folder folder;
+  const TestFolder folder;
   const TrainingFiles files = training_files(folder / "colors.yaml", {});
   std::ofstream(files.samples) << "- {image: gone.mkv, class: red, rectangle: [0, 0, 4, 4]}\n";
   TrainingSession session(files, ColorRange::limited);
@@ -177,7 +162,7 @@ TEST(TrainingSession, ABrokenSamplesFileStaysAsItIs) {
 }
 
 TEST(TrainingSession, WarnsOfWhatCannotBothBeTrue) {
-  const Folder folder;
+  const TestFolder folder;
   TrainingSession session(training_files(folder / "colors.yaml", {}), ColorRange::limited);
   const auto image = session.add_image(picture(1));
   TrainingDraft draft = two_colors(0, image.id);
@@ -189,7 +174,7 @@ TEST(TrainingSession, WarnsOfWhatCannotBothBeTrue) {
 }
 
 TEST(TrainingSession, QualityIsMeasuredWhenADraftIsLeftAlone) {
-  const Folder folder;
+  const TestFolder folder;
   TrainingSession session(training_files(folder / "colors.yaml", {}), ColorRange::limited);
   const auto first = session.add_image(picture(1)), second = session.add_image(picture(2));
   TrainingDraft draft = two_colors(0, first.id);
@@ -204,7 +189,7 @@ TEST(TrainingSession, QualityIsMeasuredWhenADraftIsLeftAlone) {
 }
 
 TEST(TrainingSession, PicturesAreBounded) {
-  const Folder folder;
+  const TestFolder folder;
   TrainingSession session(training_files(folder / "colors.yaml", {}), ColorRange::limited);
   for (int k = 0; k < 64; ++k) session.add_image(picture(k));
   EXPECT_THAT(message_of([&] { session.add_image(picture(64)); }), HasSubstr("must be at most 64"));

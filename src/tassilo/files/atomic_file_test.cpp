@@ -9,7 +9,7 @@
 #include <array>
 
 #include "tassilo/base/error.h"
-#include "tassilo/files/internal/test_folder.h"
+#include "tassilo/files/test_folder.h"
 #include "tassilo/files/text.h"
 
 namespace tassilo {

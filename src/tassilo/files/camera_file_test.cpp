@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "tassilo/files/internal/test_data.h"
-#include "tassilo/files/internal/test_folder.h"
 #include "tassilo/files/internal/test_message.h"
+#include "tassilo/files/test_folder.h"
 
 namespace tassilo {
 namespace {

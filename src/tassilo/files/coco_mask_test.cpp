@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "tassilo/files/internal/test_folder.h"
 #include "tassilo/files/internal/test_mask.h"
 #include "tassilo/files/internal/test_message.h"
+#include "tassilo/files/test_folder.h"
 #include "tassilo/files/text.h"
 
 namespace tassilo {

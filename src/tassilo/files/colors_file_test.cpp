@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <random>
 
-#include "tassilo/files/internal/test_folder.h"
 #include "tassilo/files/internal/test_message.h"
 #include "tassilo/files/png.h"
+#include "tassilo/files/test_folder.h"
 #include "tassilo/files/text.h"
 
 namespace tassilo {

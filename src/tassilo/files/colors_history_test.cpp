@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tassilo/files/internal/test_folder.h"
+#include "tassilo/files/test_folder.h"
 
 namespace tassilo {
 namespace {

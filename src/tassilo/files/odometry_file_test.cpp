@@ -7,9 +7,9 @@
 #include <random>
 
 #include "tassilo/files/internal/test_data.h"
-#include "tassilo/files/internal/test_folder.h"
 #include "tassilo/files/internal/test_message.h"
 #include "tassilo/files/setting.h"
+#include "tassilo/files/test_folder.h"
 
 namespace tassilo {
 namespace {

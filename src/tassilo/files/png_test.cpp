@@ -7,7 +7,7 @@
 #include <random>
 
 #include "tassilo/base/error.h"
-#include "tassilo/files/internal/test_folder.h"
+#include "tassilo/files/test_folder.h"
 #include "tassilo/files/text.h"
 
 namespace tassilo {

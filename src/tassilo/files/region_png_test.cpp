@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <vector>
 
-#include "tassilo/files/internal/test_folder.h"
 #include "tassilo/files/internal/test_mask.h"
 #include "tassilo/files/internal/test_message.h"
 #include "tassilo/files/png.h"
+#include "tassilo/files/test_folder.h"
 #include "tassilo/region/algebra.h"
 
 namespace tassilo {

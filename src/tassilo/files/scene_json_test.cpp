@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tassilo/files/internal/test_folder.h"
 #include "tassilo/files/internal/test_message.h"
 #include "tassilo/files/internal/test_scene.h"
+#include "tassilo/files/test_folder.h"
 
 namespace tassilo {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "tassilo/base/error.h"
 #include "tassilo/files/atomic_file.h"
-#include "tassilo/files/internal/test_folder.h"
+#include "tassilo/files/test_folder.h"
 
 namespace tassilo {
 namespace {
