@@ -278,7 +278,7 @@ class Serve(Served):
         self.assertEqual([entry["in_use"] for entry in back["history"]], [False, True])
         self.assertEqual(self.get("/api/training/table"), table)
         self.assertEqual(len(back["samples"]), 2)
-        self.send("POST", "/api/training/restore", {"id": "../../div"}, 409)
+        self.send("POST", "/api/training/restore", {"id": "../../div"}, 404)
         self.assertEqual(self.ask("DELETE", f"/api/training/images/{image}")[0], 409)
         self.assertEqual(self.ask("DELETE", "/api/training/images/x")[0], 404)
 

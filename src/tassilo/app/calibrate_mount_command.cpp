@@ -56,6 +56,20 @@ TargetPlace place_from(const std::string& text) {
   return place;
 }
 
+/// A mount that is far from the one before is more often a target that lies elsewhere than a camera that was moved.
+void warn_of_change(const std::optional<CameraMount>& before, const CameraMount& now) {
+  constexpr double far = .3, turned = radians(15);  // [m, rad] nobody sets a camera so far off by eye
+  if (!before) return;
+  const double moved = std::hypot(now.x - before->x, now.y - before->y, now.z - before->z);
+  double angle = 0;
+  for (const auto value : {&CameraMount::roll, &CameraMount::pitch, &CameraMount::yaw})
+    angle = std::max(angle, std::abs(wrap_angle(now.*value - (*before).*value)));
+  if (moved > far || angle > turned)
+    warn("mount", fmt::format("is {:.0f} cm and up to {:.0f} degrees from the one before; does the target lie on the "
+                              "floor where --at says, face up?",
+                              100 * moved, degrees(angle)));
+}
+
 /// One line a value: before, now, change and standard deviation, or that it was kept.
 void print_mount(const std::optional<CameraMount>& before, const EstimatedMount& now, bool places_measured) {
   struct Row {
@@ -135,6 +149,7 @@ int from_target(MountArguments arguments) {
     print_mount(before.mount, result.estimate, true);
   }
   for (const std::string& warning : result.warnings) warn("mount", warning);
+  warn_of_change(before.mount, result.estimate.mount);
   if (!arguments.report.empty()) {
     CalibrationDrawing drawing;
     drawing.width = before.model.width;
@@ -235,6 +250,7 @@ int from_lines(MountArguments arguments) {
   // lines are taken for the field's with less indulgence.
   constexpr double converged = .002;  // [m] 3 m away
   constexpr int most_passes = 5;
+  double shift = 0;                              // of the last pass [m]
   double angle_sigma = .02, height_sigma = .02;  // [rad, m] a mount set by eye and tape
   for (int pass = 0; pass < most_passes; ++pass) {
     setup.vision.options.mount_angle_sigma = std::max(setup.vision.options.mount_angle_sigma, angle_sigma);
@@ -255,11 +271,16 @@ int from_lines(MountArguments arguments) {
     const CameraMount last = *setup.vision.mount;
     result = mount_from_lines({before.model, last}, field, frames);
     setup.vision.mount = result.estimate.mount;
-    if (pass > 0 && floor_shift(last, result.estimate.mount) < converged) break;
+    shift = floor_shift(last, result.estimate.mount);
+    if (pass > 0 && shift < converged) break;
     angle_sigma = .003;
     height_sigma = .005;
   }
 
+  if (shift >= converged)
+    warn("mount", fmt::format("still moves what is 3 m away by {:.1f} cm from pass to pass, should be at most {:.1f}; "
+                              "more frames, with lines in several directions, tell more",
+                              100 * shift, 100 * converged));
   if (!arguments.quiet) {
     fmt::print("{} of {} frames that know their pose; {} lines, {} points, RMS {:.2f} px", result.frames, seen,
                result.curves, result.points, result.rms_px);

@@ -19,8 +19,6 @@ using nlohmann::json;
 constexpr std::string_view kPath = "/api/calibration";
 constexpr std::array kModels{LensModel::division, LensModel::plumb_bob, LensModel::equidistant};
 
-WebResponse text(int status, const std::string& why) { return {status, "text/plain; charset=utf-8", why + "\n"}; }
-
 json points_json(const TargetView& view) {
   json points = json::array();
   for (const SeenPoint& point : view.points) points.push_back({point.pixel.x, point.pixel.y});
@@ -111,8 +109,8 @@ CalibrationSession::Change change_of(const std::string& body) {
 }
 
 WebResponse answer_view(CalibrationSession& session, const std::string& method, const std::string& id) {
-  if (method != "DELETE") return text(405, "a view is forgotten by DELETE");
-  return session.forget(id) ? state_response(session) : text(404, "there is no such view");
+  if (method != "DELETE") return refusal(405, "a view is forgotten by DELETE");
+  return session.forget(id) ? state_response(session) : refusal(404, "there is no such view");
 }
 
 WebResponse answer_views(CalibrationSession& session, const std::string& method) {
@@ -121,7 +119,7 @@ WebResponse answer_views(CalibrationSession& session, const std::string& method)
   else if (method == "DELETE")
     session.forget_all();
   else
-    return text(405, "a view is captured by POST, all are forgotten by DELETE");
+    return refusal(405, "a view is captured by POST, all are forgotten by DELETE");
   return state_response(session);
 }
 
@@ -139,31 +137,31 @@ WebResponse answer_calibration(CalibrationSession& session, const WebRequest& re
         try {
           session.change(change_of(request.body));
         } catch (const Error& error) {
-          return text(400, error.what());
+          return refusal(400, error.what());
         }
       } else if (!reads) {
-        return text(405, "calibration is read by GET and changed by PUT");
+        return refusal(405, "calibration is read by GET and changed by PUT");
       }
       return state_response(session);
     }
     if (what.starts_with(views)) return answer_view(session, request.method, what.substr(views.size()));
     if (what == "/views") return answer_views(session, request.method);
     if (what == "/residuals") {
-      if (!reads) return text(405, "must be read by GET");
+      if (!reads) return refusal(405, "must be read by GET");
       const auto picture = session.residuals();
-      return picture ? WebResponse{200, "image/png", encode_png(*picture)} : text(404, "there is no result");
+      return picture ? WebResponse{200, "image/png", encode_png(*picture)} : refusal(404, "there is no result");
     }
     if (what == "/solve" || what == "/save") {
-      if (request.method != "POST") return text(405, "must be asked by POST");
+      if (request.method != "POST") return refusal(405, "must be asked by POST");
       if (what == "/solve")
         session.solve();
       else
         session.save(take_over);
       return state_response(session);
     }
-    return text(404, "there is nothing at " + request.path);
+    return refusal(404, "there is nothing at " + request.path);
   } catch (const Error& error) {
-    return text(409, error.what());
+    return refusal(409, error.what());
   }
 }
 

@@ -15,13 +15,15 @@
 #include "tassilo/files/camera_file.h"
 #include "tassilo/files/colors_history.h"
 #include "tassilo/files/text.h"
+#include "tassilo/files/time_for_names.h"
 
 namespace tassilo {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr auto kLookOn = std::chrono::seconds(3);               ///< After somebody asked.
+constexpr auto kLookOn = std::chrono::seconds(3);      ///< After somebody asked.
+constexpr auto kCaptureOn = std::chrono::seconds(60);  ///< The same, for views that are captured by themselves.
 constexpr auto kBetweenLooks = std::chrono::milliseconds(100);  ///< Motion shows, and the vision keeps its cores.
 constexpr double kRest = .0025, kOtherPlace = .05;              ///< Of the image's diagonal.
 constexpr double kOtherSize = .15;                              ///< Relative; a turn of 9 degrees is as much.
@@ -107,10 +109,12 @@ void keep_in_history(const fs::path& file, const std::string& text) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw Error(folder.string(), "cannot be created: " + error.message());
-  for (const auto& entry : fs::directory_iterator(folder, error))
-    if (entry.is_regular_file(error) && entry.file_size(error) == text.size() &&
-        read_text(entry.path(), kMostFileBytes) == text)
+  for (auto at = fs::directory_iterator(folder, error); !error && at != fs::directory_iterator(); at.increment(error)) {
+    std::error_code unreadable;
+    if (at->is_regular_file(unreadable) && at->file_size(unreadable) == text.size() && !unreadable &&
+        read_text(at->path(), kMostFileBytes) == text)
       return;
+  }
   const std::string now = time_for_names();
   fs::path kept = folder / (now + ".yaml");
   for (int n = 2; fs::exists(kept, error); ++n) kept = folder / fmt::format("{}-{}.yaml", now, n);
@@ -205,6 +209,11 @@ CalibrationSession::State CalibrationSession::state() const {
   return state;
 }
 
+void CalibrationSession::set_file(const fs::path& camera_file) {
+  const std::scoped_lock lock(saving_, mutex_);
+  file_ = camera_file;
+}
+
 void CalibrationSession::watched() {
   const std::lock_guard lock(mutex_);
   watched_at_ = Clock::now();
@@ -215,7 +224,7 @@ bool CalibrationSession::wants_frame() const {
   if (!is_on_ || is_looking_ || waiting_) return false;
   const auto now = Clock::now();
   const bool is_wanted =
-      is_capture_asked_ || (is_automatic_ && views_.size() < kMostViews) || now - watched_at_ < kLookOn;
+      is_capture_asked_ || now - watched_at_ < (is_automatic_ && views_.size() < kMostViews ? kCaptureOn : kLookOn);
   return is_wanted && now - looked_at_ >= kBetweenLooks;
 }
 
@@ -242,7 +251,7 @@ void CalibrationSession::look_on() {
     waiting_.reset();
     is_looking_ = true;
     looked_at_ = Clock::now();
-    const bool is_asked = is_capture_asked_;
+    const std::int64_t asked = is_capture_asked_ ? asked_number_ : 0;
     const std::int64_t settings = settings_;
     const std::vector<Target> targets = targets_;
     lock.unlock();
@@ -257,7 +266,8 @@ void CalibrationSession::look_on() {
     }
     lock.lock();
     is_looking_ = false;
-    if (settings != settings_) continue;  // it was looked for something else
+    if (settings != settings_) continue;                                // it was looked for something else
+    const bool is_asked = is_capture_asked_ && asked == asked_number_;  // and not given up meanwhile
     judge(look, waiting.is_single, is_asked, {waiting.image.width, waiting.image.height});
     if (is_asked) {
       is_capture_asked_ = false;
@@ -313,10 +323,13 @@ void CalibrationSession::capture_next(std::chrono::milliseconds patience) {
     throw Error("views", fmt::format("are {}, must be at most {}; forget some", views_.size(), kMostViews));
   waiting_.reset();  // it is from before
   is_capture_asked_ = true;
+  ++asked_number_;
   const bool came = looked_.wait_for(lock, patience, [&] { return ending_ || !is_on_ || !is_capture_asked_; });
   if (is_capture_asked_) {
     is_capture_asked_ = false;
-    throw Error("view", came ? "was not captured: calibration has ended" : "was not captured: no frame comes");
+    throw Error("view", came          ? "was not captured: calibration has ended"
+                        : is_looking_ ? "was not captured: looking for the targets takes too long"
+                                      : "was not captured: no frame comes");
   }
   if (!asked_fault_.empty()) throw Error("view", "was not captured: " + asked_fault_);
 }
@@ -350,6 +363,7 @@ void CalibrationSession::solve() {
       throw Error("views", fmt::format("are {}, must be at least {}", views_.size(), kLeastViews));
     drop_result();
     is_solving_ = true;
+    is_automatic_ = false;  // another view would drop the result
   }
   to_solve_.notify_all();
 }
@@ -412,7 +426,7 @@ void CalibrationSession::save(const std::function<void()>& take_over) {
   write_camera(file_, camera);
   try {
     take_over();
-  } catch (const Error& error) {
+  } catch (const std::exception& error) {  // a plug-in may throw anything
     write_atomically(file_, former.text);
     throw Error(file_.string(), fmt::format("is as it was, the run refuses the new one: {}", error.what()));
   }

@@ -43,6 +43,9 @@ class CalibrationSession {
   CalibrationSession(const CalibrationSession&) = delete;
   CalibrationSession& operator=(const CalibrationSession&) = delete;
 
+  /// The robot file names another camera file, or none (empty), from now on.
+  void set_file(const std::filesystem::path& camera_file);
+
   /// Fields that are there are changed.
   struct Change {
     std::optional<bool> is_on = {}, is_automatic = {};
@@ -119,9 +122,9 @@ class CalibrationSession {
   void drop_result();
   void work();
 
-  const std::filesystem::path file_;
-  std::mutex saving_;         ///< Held while the file is replaced; before the other one.
-  mutable std::mutex mutex_;  ///< Guards all below, and is held shortly only.
+  std::filesystem::path file_;  ///< Of who answers requests.
+  std::mutex saving_;           ///< Held while the file is replaced; before the other one.
+  mutable std::mutex mutex_;    ///< Guards all below, and is held shortly only.
   std::condition_variable waiting_changed_, looked_, to_solve_;
   bool is_on_ = false, is_automatic_ = true;
   std::vector<Target> targets_;
@@ -130,6 +133,7 @@ class CalibrationSession {
   ImageSize size_;
   std::optional<Waiting> waiting_;
   bool is_looking_ = false, is_capture_asked_ = false;
+  std::int64_t asked_number_ = 0;  ///< Of the last capture that was asked for.
   Clock::time_point watched_at_, looked_at_;
   std::optional<Look> now_;
   std::string asked_fault_;  ///< Why what was asked for last was not captured; empty when it was.

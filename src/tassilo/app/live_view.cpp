@@ -92,7 +92,11 @@ VisionChanges really_changed(VisionChanges changes, const RobotSetup& setup) {
   return changes;
 }
 
-WebResponse refusal(int status, const std::string& why) { return {status, "text/plain; charset=utf-8", why + "\n"}; }
+/// The file of a role, as it was named; empty: there is none.
+std::string file_of(const Configuration& configuration, const char* role) {
+  const auto file = std::ranges::find(configuration.setup.read, std::string(role), &NamedFile::role);
+  return file != configuration.setup.read.end() ? file->path : "";
+}
 
 }  // namespace
 
@@ -271,6 +275,8 @@ std::shared_ptr<const std::string> LiveView::shown_frame(std::optional<std::int6
   if (frame)
     for (const auto& bytes : last_frames_)
       if (frame_of_bytes(bytes).index == *frame) return bytes;
+  // Nothing comes: others need not wait for that.
+  if (std::chrono::steady_clock::now() - seen_.shown_at > patience) return nullptr;
   is_frame_wanted_ = true;
   if (!shown_.wait_for(lock, patience, [&] { return ending_ || !is_frame_wanted_; }) || ending_) {
     is_frame_wanted_ = false;
@@ -301,11 +307,11 @@ WebResponse LiveView::train(const WebRequest& request) {
     range = range_;
   }
   if (!now || !range) return refusal(503, "the source is not open yet");
-  if (!training_) {
-    const auto colors = std::ranges::find(now->setup.read, std::string(kColorsRole), &NamedFile::role);
-    training_ = std::make_unique<TrainingSession>(
-        training_files(colors != now->setup.read.end() ? colors->path : "", samples_), *range);
-  }
+  const TrainingFiles files = training_files(file_of(*now, kColorsRole), samples_);
+  if (!training_) training_ = std::make_unique<TrainingSession>(files, *range);
+  if (training_->files().colors != files.colors)
+    return refusal(409, "the robot file names another color table now, " + files.colors.string() +
+                            "; start the server again to train that one");
   return answer_training(
       *training_, request,
       {[this] {
@@ -320,11 +326,10 @@ WebResponse LiveView::calibrate(const WebRequest& request) {
   {
     const std::lock_guard lock(mutex_);
     if (!now_) return refusal(503, "the source is not open yet");
-    if (!calibration_) {
-      const auto camera = std::ranges::find(now_->setup.read, std::string(kCameraRole), &NamedFile::role);
-      calibration_ = std::make_unique<CalibrationSession>(camera != now_->setup.read.end() ? camera->path : "");
-    }
+    const std::string camera = file_of(*now_, kCameraRole);
+    if (!calibration_) calibration_ = std::make_unique<CalibrationSession>(camera);
     session = calibration_.get();
+    session->set_file(camera);
   }
   return answer_calibration(*session, request, [this] { take_over_files(); });
 }

@@ -37,7 +37,7 @@ void apply_changes(RobotSetup& setup, const VisionChanges& changes);
 /// there when it had time, and only while somebody looks.
 ///
 /// threads  `begin`, `show`, `chosen`, `told` and `leave` from the run's thread, `changes` and `load_with_changes` from
-///          any; requests are answered on the server's
+///          any; requests are answered on a thread of the server's
 class LiveView {
  public:
   /// Loads the configuration with these changes. Throws Error for what is wrong with them.

@@ -9,6 +9,7 @@
 #include "tassilo/app/recorded_configuration.h"
 #include "tassilo/base/error.h"
 #include "tassilo/files/scene_json.h"
+#include "tassilo/files/time_for_names.h"
 
 namespace tassilo {
 namespace {
@@ -18,15 +19,6 @@ namespace fs = std::filesystem;
 /// What comes further from a frame than that says nothing of it: twice the longest gap that odometry bridges. [s]
 constexpr double kReach = 2 * Odometry::kMaxGap;
 constexpr auto kFlushPause = std::chrono::seconds(2);
-
-/// 2026-11-28T00-04-47Z
-std::string name_of_now() {
-  const std::time_t now = std::time(nullptr);
-  std::tm parts{};
-  gmtime_r(&now, &parts);
-  char text[32];
-  return {text, std::strftime(text, sizeof text, "%Y-%m-%dT%H-%M-%SZ", &parts)};
-}
 
 std::int64_t pixel_bytes(const FrameView& view) {
   const std::int64_t pixels = std::int64_t{view.width()} * view.height();
@@ -90,7 +82,7 @@ void Recorder::start() {
   state_.on = true;
   state_.folder = folder_.string();
   started_ = Clock::now();
-  start_name_ = name_of_now();
+  start_name_ = time_for_names();
   why_next_ = "as it was started";
   catches_up_ = is_left_out_ = false;
 }

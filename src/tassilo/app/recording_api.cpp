@@ -6,11 +6,7 @@
 #include "tassilo/files/json.h"
 
 namespace tassilo {
-namespace {
-
-WebResponse refusal(int status, const std::string& why) { return {status, "text/plain; charset=utf-8", why + "\n"}; }
-
-}  // namespace
+namespace {}  // namespace
 
 nlohmann::json recording_json(const RecordingState& state) {
   return {{"on", state.on},           {"finishing", state.finishing}, {"folder", state.folder}, {"name", state.name},

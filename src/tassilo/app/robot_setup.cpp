@@ -1,5 +1,6 @@
 #include "tassilo/app/robot_setup.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "tassilo/app/plugin.h"
@@ -90,6 +91,17 @@ RobotSetup read_robot_setup(const std::string& robot_file, const std::string& co
   }
   setup.robot = robot;
   return setup;
+}
+
+bool see_alike(const RobotSetup& a, const RobotSetup& b) {
+  const VisionSetup &x = a.vision, &y = b.vision;
+  const bool has_plugins = std::ranges::any_of(
+      a.read, [](const NamedFile& file) { return file.role == "plug-in" || file.role == "--plugin"; });
+  const auto text_of = [](const auto& setting) { return std::pair(setting.first, setting.second.text); };
+  return !has_plugins && std::ranges::equal(a.settings, b.settings, {}, text_of, text_of) &&
+         a.robot.plugins == b.robot.plugins && x.colors == y.colors && x.field == y.field && x.camera == y.camera &&
+         x.mount == y.mount && x.options.stages == y.options.stages &&
+         option_values(x.options) == option_values(y.options);
 }
 
 }  // namespace tassilo

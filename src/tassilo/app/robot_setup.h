@@ -41,4 +41,8 @@ StageRegistry registry_of(const RobotFile& robot, const std::string& robot_file,
 RobotSetup read_robot_setup(const std::string& robot_file, const std::string& colors,
                             std::span<const std::string> plugins = {});
 
+/// Do both see the same, with the same settings below `vision:`, whatever files that comes from? Never with plug-ins,
+/// whose code may have changed.
+bool see_alike(const RobotSetup& a, const RobotSetup& b);
+
 }  // namespace tassilo

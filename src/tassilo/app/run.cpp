@@ -324,8 +324,12 @@ class Run {
     if (optics == nullptr || !scene.pose) return;
     if (drift_of_ != configuration_) {
       const VisionSetup& setup = configuration_->setup.vision;
-      // What was said of another mount says nothing of this one.
-      if (drift_of_ && drift_of_->setup.vision.mount != setup.mount) tell_drift("");
+      // What another camera or mount showed says nothing of this one.
+      if (drift_of_ &&
+          (drift_of_->setup.vision.mount != setup.mount || drift_of_->setup.vision.camera != setup.camera)) {
+        drift_ = {};
+        tell_drift("");
+      }
       drift_of_ = configuration_;
       drift_target_.emplace(setup.field);
     }
@@ -349,10 +353,13 @@ class Run {
     if (auto chosen = live_ != nullptr ? live_->chosen() : nullptr) {
       configuration_ = std::move(chosen);
       changes = "a changed one was taken over";
-      tell_now(fmt::format("frame {}: stages as chosen in the browser\n", frame));
+      tell_now(fmt::format("frame {}: as chosen in the browser\n", frame));
     }
     auto news = watch_ ? watch_->news() : std::nullopt;
     if (!news) return changes;
+    // A browser's save is loaded at once, and seen by the watch a moment later.
+    if (news->configuration && see_alike(news->configuration->setup, configuration_->setup))
+      news->configuration = nullptr;
     if (live_ != nullptr) live_->told(*news);
     // A choice that was made after the files were read is in neither of them alone; the later load has both.
     if (news->configuration && news->configuration->load > configuration_->load) {

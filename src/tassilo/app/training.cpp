@@ -157,7 +157,7 @@ LoadedSamples load_samples(const std::string& file, ColorRange images_range, con
 }
 
 TrainedColors train_colors_file(const TrainingSet& set, const TrainingSet* held_out, const TrainingOptions& options,
-                                const Warn& warn) {
+                                const Warn& warn, const ColorQuality* measured) {
   const LoadedSamples& loaded = set.loaded;
   if (loaded.samples.empty()) throw Error(set.name, "has no sample with a pixel in its image");
   if (std::ranges::all_of(loaded.samples, [](const ColorSample& s) { return s.color == ColorClass::no_color; }))
@@ -183,7 +183,7 @@ TrainedColors train_colors_file(const TrainingSet& set, const TrainingSet* held_
     add_quality(trained.quality, Classifier(table), held_out->loaded.samples);
     provenance.notes = "on " + held_out->name;
   } else {
-    trained.quality = cross_validate(loaded.samples, *loaded.range, options);
+    trained.quality = measured != nullptr ? *measured : cross_validate(loaded.samples, *loaded.range, options);
     const bool is_measured =
         std::ranges::any_of(sampled, [&](ColorClass color) { return trained.quality.pixels(color) > 0; });
     provenance.notes = !is_measured ? "not measured: needs a second sample of each color, better in another image"

@@ -46,9 +46,10 @@ struct TrainingSet {
 };
 
 /// Trains a table from what load_samples or someone else brought. Quality is measured on `held_out` where that is
-/// given, else by cross-validation, and is noted in the file's provenance with today's date. Throws Error naming
-/// `samples` when there is nothing to learn from, or the ranges differ.
+/// given, else by cross-validation (or is `measured`, when that is known already), and is noted in the file's
+/// provenance with today's date. Throws Error naming `samples` when there is nothing to learn from, or the ranges
+/// differ.
 TrainedColors train_colors_file(const TrainingSet& samples, const TrainingSet* held_out, const TrainingOptions& options,
-                                const Warn& warn);
+                                const Warn& warn, const ColorQuality* measured = nullptr);
 
 }  // namespace tassilo

@@ -18,7 +18,6 @@ using nlohmann::json;
 
 constexpr std::string_view kPath = "/api/training";
 
-WebResponse text(int status, const std::string& why) { return {status, "text/plain; charset=utf-8", why + "\n"}; }
 WebResponse said(const json& value) {
   return {200, "application/json", value.dump(-1, ' ', false, json::error_handler_t::replace)};
 }
@@ -153,7 +152,7 @@ WebResponse result_response(const TrainingSession::Result& result, const std::st
   std::optional<ColorClass> seen;
   if (const auto name = query_value(query, "class")) {
     seen = color_class_from(*name);
-    if (!seen) return text(400, "class is '" + *name + "', must be no_color or a color class");
+    if (!seen) return refusal(400, "class is '" + *name + "', must be no_color or a color class");
   }
   std::array<std::int64_t, kColorClassCount + 1> samples{}, pixels{};
   for (const auto& sample : result.samples) {
@@ -185,11 +184,11 @@ WebResponse quality_response(const TrainingSession::JudgedQuality& judged) {
 
 /// What is asked, read before anything is done: what cannot be read is the asker's fault, 400.
 template <class Read>
-auto asked(Read read, WebResponse& refusal) -> std::optional<decltype(read())> {
+auto asked(Read read, WebResponse& no) -> std::optional<decltype(read())> {
   try {
     return read();
   } catch (const Error& error) {
-    refusal = text(400, error.what());
+    no = refusal(400, error.what());
     return std::nullopt;
   }
 }
@@ -216,33 +215,39 @@ WebResponse answer_image(TrainingSession& session, const WebRequest& request, co
                          const TrainingRun& run) {
   if (request.method == "GET") {
     const auto image = session.image(id);
-    return image ? WebResponse{200, "application/octet-stream", *image->bytes} : text(404, "there is no such picture");
+    return image ? WebResponse{200, "application/octet-stream", *image->bytes}
+                 : refusal(404, "there is no such picture");
   }
   if (request.method == "DELETE")
     return session.remove_image(id) ? state_response(session, run.table_in_use())
-                                    : text(404, "there is no such picture");
-  return text(405, "a picture is read by GET and forgotten by DELETE");
+                                    : refusal(404, "there is no such picture");
+  return refusal(405, "a picture is read by GET and forgotten by DELETE");
 }
 
 WebResponse answer_post(TrainingSession& session, const std::string& what, const std::string& body,
                         const TrainingRun& run) {
-  WebResponse refusal;
+  WebResponse no;
   if (what == "/images") {
-    const auto frame = asked([&] { return frame_of(body); }, refusal);
-    if (!frame) return refusal;
+    const auto frame = asked([&] { return frame_of(body); }, no);
+    if (!frame) return no;
     const auto bytes = run.frame(*frame);
-    return bytes ? said(image_json(session.add_image(bytes))) : text(503, "no frame comes");
+    return bytes ? said(image_json(session.add_image(bytes))) : refusal(503, "no frame comes");
   }
   if (what == "/save") {
-    const auto request = asked([&] { return save_request_of(body); }, refusal);
-    if (!request) return refusal;
+    const auto request = asked([&] { return save_request_of(body); }, no);
+    if (!request) return no;
     session.save(request->version, request->notes);
   } else {
-    const auto id = asked([&] { return parse_json(body, "request").map({"id"}).at("id").string(); }, refusal);
-    if (!id) return refusal;
-    session.restore(*id);
+    const auto id = asked([&] { return parse_json(body, "request").map({"id"}).at("id").string(); }, no);
+    if (!id) return no;
+    if (!session.restore(*id)) return refusal(404, *id + " is no table of the history");
   }
-  run.take_over();
+  try {
+    run.take_over();
+  } catch (const std::exception& error) {
+    return refusal(409,
+                   std::string("the files are written, but the run goes on with the table before: ") + error.what());
+  }
   return state_response(session, run.table_in_use());
 }
 
@@ -255,21 +260,21 @@ WebResponse answer_training(TrainingSession& session, const WebRequest& request,
     if (what.starts_with(images)) return answer_image(session, request, what.substr(images.size()), run);
     if (what == "/images" || what == "/save" || what == "/restore")
       return request.method == "POST" ? answer_post(session, what, request.body, run)
-                                      : text(405, "must be asked by POST");
+                                      : refusal(405, "must be asked by POST");
     if (what == "/draft") {
-      if (request.method != "PUT") return text(405, "the draft is set by PUT");
-      WebResponse refusal;
-      auto draft = asked([&] { return draft_from_json(request.body, "request"); }, refusal);
-      return draft ? result_response(session.set_draft(std::move(*draft)), request.query) : refusal;
+      if (request.method != "PUT") return refusal(405, "the draft is set by PUT");
+      WebResponse no;
+      auto draft = asked([&] { return draft_from_json(request.body, "request"); }, no);
+      return draft ? result_response(session.set_draft(std::move(*draft)), request.query) : no;
     }
-    if (request.method != "GET") return text(405, "must be read by GET");
+    if (request.method != "GET" && request.method != "HEAD") return refusal(405, "must be read by GET");
     if (what.empty()) return state_response(session, run.table_in_use());
     if (what == "/result") return result_response(session.result(), request.query);
     if (what == "/quality") return quality_response(session.quality());
     if (what == "/table") return said(table_json(run.table_in_use()));
-    return text(404, "there is nothing at " + request.path);
+    return refusal(404, "there is nothing at " + request.path);
   } catch (const Error& error) {
-    return text(409, error.what());
+    return refusal(409, error.what());
   }
 }
 

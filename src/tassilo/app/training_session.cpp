@@ -14,6 +14,7 @@
 #include "tassilo/base/error.h"
 #include "tassilo/files/atomic_file.h"
 #include "tassilo/files/text.h"
+#include "tassilo/files/time_for_names.h"
 #include "tassilo/record/lossless_video.h"
 #include "tassilo/region/algebra.h"
 #include "tassilo/source/frame_source.h"
@@ -26,6 +27,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMostImages = 64;
 constexpr std::size_t kMostImageBytes = 256u << 20;      // [B]
 constexpr std::size_t kMostSamplesText = 1 << 20;        // as of every YAML file [B]
+constexpr std::int64_t kMostPixels = 20'000'000;         // of all samples: 65 pictures of 640 x 480, 60 MB
 constexpr double kMuchOverlap = 0.01;                    // share of a class's pixels that another one claims, too
 constexpr auto kQuiet = std::chrono::milliseconds(250);  // a draft that changes more often is still being drawn
 
@@ -55,6 +57,11 @@ void write_still(const fs::path& file, const Frame& frame) {
   remove();
 }
 
+/// That a picture is kept in.
+std::size_t bytes_of(const FrameView& view) {
+  return 2 * static_cast<std::size_t>(view.width()) * static_cast<std::size_t>(view.height());
+}
+
 double share(std::int64_t part, std::int64_t whole) {
   return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0;
 }
@@ -76,6 +83,7 @@ TrainingSession::TrainingSession(TrainingFiles files, ColorRange range) : files_
   try {
     if (files_.colors.empty()) throw Error("colors", "no color table is named that could be written");
     load_parameters();
+    history_ = read_history(files_.colors);
     load_samples_file();
   } catch (const Error& error) {
     refusal_ = error.what();
@@ -101,12 +109,21 @@ void TrainingSession::load_parameters() {
   if (!fs::exists(files_.colors, ignored)) return;
   const ColorsFile colors = read_colors(files_.colors);
   table_.priority = colors.table.priority;
+  note_table(colors);
   if (!colors.trained_from) return;
   for (const TrainingNumber& number : training_numbers())
     if (const auto found = colors.trained_from->options.find(number.key); found != colors.trained_from->options.end())
       number.set(options_, found->second);
   for (const auto& [color, interval] : colors.trained_from->brightness)
     options_.brightness[static_cast<std::size_t>(class_index(color))] = interval;
+}
+
+void TrainingSession::note_table(const ColorsFile& colors) {
+  in_file_.clear();
+  for (const ColorClass color : kColorClasses)
+    if (std::ranges::any_of(colors.table.chroma, [&](ClassBits bits) { return (bits & class_bit(color)) != 0; }))
+      in_file_.push_back(color);
+  trained_from_ = colors.trained_from ? colors.trained_from->samples : "";
 }
 
 void TrainingSession::load_samples_file() {
@@ -116,6 +133,7 @@ void TrainingSession::load_samples_file() {
   std::map<fs::path, std::set<std::int64_t>> wanted;
   for (const TrainingSample& sample : list) wanted[sample.image].insert(sample.frame);
   std::map<std::pair<fs::path, std::int64_t>, std::string> ids;
+  std::size_t size = 0;
   for (const auto& [file, indices] : wanted) {
     SourceOptions source;
     source.location = file.string();
@@ -127,6 +145,10 @@ void TrainingSession::load_samples_file() {
         throw Error(files_.samples.string(),
                     fmt::format("{} has {} color range, what is seen now has {}; a table is for one range",
                                 file.string(), to_string(frames[i].range), to_string(range_)));
+      size += bytes_of(frames[i].view);
+      if (images_.size() == kMostImages || size > kMostImageBytes)
+        throw Error(files_.samples.string(), fmt::format("has samples in more than {} pictures or {} MB of them",
+                                                         kMostImages, kMostImageBytes >> 20));
       const bool is_one_of_many = order.size() > 1 || order[i] > 0;
       images_.push_back(
           {std::to_string(next_image_++),
@@ -139,7 +161,15 @@ void TrainingSession::load_samples_file() {
     const DraftSample one{ids.at({sample.image, sample.frame}), sample.color, sample.shape};
     if (std::holds_alternative<SampleMask>(one.shape)) masks_.push_back(one);
     draft_.push_back(drawn(one));
+    check_pixels(draft_);
   }
+}
+
+void TrainingSession::check_pixels(const std::vector<std::shared_ptr<const Drawn>>& samples) {
+  std::int64_t pixels = 0;
+  for (const auto& one : samples) pixels += static_cast<std::int64_t>(one->pixels->pixels.size());
+  if (pixels > kMostPixels)
+    throw Error("samples", fmt::format("have {} pixels, must have at most {}", pixels, kMostPixels));
 }
 
 std::size_t TrainingSession::index_of(const std::string& image) const {
@@ -186,6 +216,14 @@ void TrainingSession::train() {
   table_.priority = priority;
 }
 
+std::string TrainingSession::classes_without_samples() const {
+  std::string lost;
+  for (const ColorClass color : in_file_)
+    if (std::ranges::none_of(draft_, [&](const auto& one) { return one->sample.color == color; }))
+      lost.append(lost.empty() ? "" : ", ").append(to_string(color));
+  return lost;
+}
+
 std::vector<std::string> TrainingSession::warnings() const {
   std::vector<std::string> warnings;
   ColorQuality quality;
@@ -206,6 +244,10 @@ std::vector<std::string> TrainingSession::warnings() const {
                                        to_string(b.sample.color), to_string(a.sample.color), shared,
                                        images_[index_of(a.sample.image)].name));
     }
+  if (std::string lost = classes_without_samples(); !lost.empty() && !draft_.empty())
+    warnings.push_back(
+        fmt::format("the table that is there has {}, of which there is no sample: saving this one loses them{}", lost,
+                    trained_from_.empty() ? "" : "; it was trained from " + trained_from_));
   for (const ColorClass color : kColorClasses) {
     const std::int64_t pixels = quality.pixels(color);
     if (pixels > 0 &&
@@ -227,10 +269,9 @@ TrainingSession::State TrainingSession::state() const {
   State state;
   {
     const std::lock_guard lock(mutex_);
-    state = {version_, saved_version_ == version_, range_, files_, refusal_, images_, {}, options_, {}};
+    state = {version_, saved_version_ == version_, range_, files_, refusal_, images_, {}, options_, history_};
     for (const auto& one : draft_) state.samples.push_back(one->sample);
   }
-  if (!files_.colors.empty()) state.history = read_history(files_.colors);
   return state;
 }
 
@@ -276,7 +317,10 @@ TrainingSession::Result TrainingSession::set_draft(TrainingDraft draft) {
                               draft.version, version_));
     std::vector<std::shared_ptr<const Drawn>> all;
     all.reserve(draft.samples.size());
-    for (const DraftSample& sample : draft.samples) all.push_back(drawn(sample));
+    for (const DraftSample& sample : draft.samples) {
+      all.push_back(drawn(sample));
+      check_pixels(all);
+    }
     draft_ = std::move(all);
     options_ = draft.options;
     ++version_;
@@ -310,7 +354,11 @@ void TrainingSession::judge() {
     const std::vector<ColorSample> samples = copied_samples();
     const TrainingOptions options = options_;
     lock.unlock();
-    const ColorQuality quality = cross_validate(samples, range_, options);
+    ColorQuality quality;
+    try {
+      quality = cross_validate(samples, range_, options);
+    } catch (const std::exception&) {  // no memory, say: nothing is known of this draft
+    }
     lock.lock();
     judged_version_ = version;
     quality_ = quality;
@@ -333,9 +381,30 @@ void TrainingSession::write_images(const std::string& now) {
   }
 }
 
-void TrainingSession::keep_present_table() {
+void TrainingSession::keep_present_table(const std::string& now) {
   std::error_code ignored;
-  if (fs::exists(files_.colors, ignored)) keep_in_history(files_.colors, read_colors(files_.colors), time_for_names());
+  if (!fs::exists(files_.colors, ignored)) return;
+  std::optional<ColorsFile> present;
+  try {
+    present = read_colors(files_.colors);
+  } catch (const Error&) {  // broken, but perhaps somebody's work
+    const fs::path kept = files_.colors.parent_path() / fmt::format("{}_{}.yaml", files_.colors.stem().string(), now);
+    write_atomically(kept, text_of(files_.colors));
+    return;
+  }
+  keep_in_history(files_.colors, *present, now);
+}
+
+/// In a folder of their own, with paths that hold there.
+void TrainingSession::keep_present_samples(const std::string& now) const {
+  if (samples_text_.empty()) return;
+  const fs::path folder = files_.samples.parent_path() / (files_.samples.stem().string() + "_history");
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw Error(folder.string(), "cannot be created: " + error.message());
+  fs::path file = folder / (now + ".yaml");
+  for (int n = 2; fs::exists(file, error); ++n) file = folder / fmt::format("{}-{}.yaml", now, n);
+  write_atomically(file, samples_yaml(samples_from_yaml(samples_text_, files_.samples), folder));
 }
 
 void TrainingSession::save(std::int64_t version, const std::string& notes) {
@@ -350,45 +419,57 @@ void TrainingSession::save(std::int64_t version, const std::string& notes) {
   loaded.images = static_cast<int>(groups.size());
   std::error_code error;
   const fs::path from_colors = fs::proximate(files_.samples, files_.colors.parent_path(), error);
-  ColorsFile colors = train_colors_file({error ? files_.samples.string() : from_colors.string(), std::move(loaded)},
-                                        nullptr, options_, [](const std::string&, const std::string&) {})
-                          .file;
+  ColorsFile colors =
+      train_colors_file(
+          {error ? files_.samples.string() : from_colors.string(), std::move(loaded)}, nullptr, options_,
+          [](const std::string&, const std::string&) {}, judged_version_ == version_ ? &quality_ : nullptr)
+          .file;
   colors.table.priority = table_.priority;
   if (!notes.empty()) colors.trained_from->notes = notes + "; " + colors.trained_from->notes;
 
   const std::string now = time_for_names();
   if (std::ranges::any_of(draft_, [&](const auto& one) { return images_[index_of(one->sample.image)].file.empty(); }))
     write_images(now);
-  // What somebody else wrote meanwhile is no less work than this.
-  if (const std::string there = text_of(files_.samples); there != samples_text_)
-    write_atomically(files_.samples.parent_path() / fmt::format("{}_{}.yaml", files_.samples.stem().string(), now),
-                     there);
   std::vector<TrainingSample> samples;
   for (const auto& one : draft_) {
     const Image& image = images_[index_of(one->sample.image)];
     samples.push_back({image.file, image.frame, one->sample.color, one->sample.shape});
   }
   const std::string text = samples_yaml(samples, files_.samples.parent_path());
+  if (text.size() > kMostSamplesText)
+    throw Error(files_.samples.string(), fmt::format("would have {} bytes, must have at most {} to be read again",
+                                                     text.size(), kMostSamplesText));
+  // What somebody else wrote meanwhile is no less work than this.
+  if (const std::string there = text_of(files_.samples); there != samples_text_)
+    write_atomically(files_.samples.parent_path() / fmt::format("{}_{}.yaml", files_.samples.stem().string(), now),
+                     there);
+  if (text != samples_text_) keep_present_samples(now);
   write_atomically(files_.samples, text);
   samples_text_ = text;
-  keep_present_table();
+  keep_present_table(now);
   write_colors(files_.colors, colors);
-  keep_in_history(files_.colors, colors, now);
+  note_table(colors);
+  keep_in_history(files_.colors, colors, now);  // after the former one, also within a second
+  history_ = read_history(files_.colors);
   saved_version_ = version_;
 }
 
-void TrainingSession::restore(const std::string& id) {
+bool TrainingSession::restore(const std::string& id) {
   const std::lock_guard lock(mutex_);
   if (files_.colors.empty()) throw Error("colors", "no color table is named that could be written");
-  const auto history = read_history(files_.colors);
-  const auto former = std::ranges::find(history, id, &FormerColors::id);
-  if (former == history.end()) throw Error(id, "is no table of the history");
+  history_ = read_history(files_.colors);
+  const auto former = std::ranges::find(history_, id, &FormerColors::id);
+  if (former == history_.end()) return false;
   if (!former->fault.empty()) throw Error(id, "cannot be read: " + former->fault);
   if (former->colors.table.range != range_)
     throw Error(id, fmt::format("is for {} color range, what is seen now has {}", to_string(former->colors.table.range),
                                 to_string(range_)));
-  keep_present_table();
-  write_colors(files_.colors, former->colors);
+  const ColorsFile colors = former->colors;
+  keep_present_table(time_for_names());
+  write_colors(files_.colors, colors);
+  note_table(colors);
+  history_ = read_history(files_.colors);
+  return true;
 }
 
 }  // namespace tassilo

@@ -63,6 +63,7 @@ class TrainingSession {
     std::vector<FormerColors> history;
   };
   State state() const;
+  const TrainingFiles& files() const { return files_; }
 
   /// Keeps a picture. Throws Error when there are too many: 64, or 256 MB.
   Image add_image(std::shared_ptr<const std::string> bytes);
@@ -79,7 +80,8 @@ class TrainingSession {
     std::vector<std::string> warnings;
   };
   /// Takes the draft and trains. Throws Error when it is made of another version than this one is at, when a picture is
-  /// not there, or a mask is not one of the samples file. Costs the training, some 10 ms.
+  /// not there, a mask is not one of the samples file, or all samples together have more than 20 million pixels. Costs
+  /// the training, some 10 ms.
   Result set_draft(TrainingDraft draft);
   Result result() const;
 
@@ -93,8 +95,9 @@ class TrainingSession {
   /// Writes pictures with samples, samples and table. Throws Error when there is a refusal, the version is another one,
   /// or something cannot be written; the files that were written until then are whole, each for itself.
   void save(std::int64_t version, const std::string& notes);
-  /// Makes a table of the history the colors file's. Throws Error when it is not there, broken, or cannot be written.
-  void restore(const std::string& id);
+  /// Makes a table of the history the colors file's. False when it is not there. Throws Error when it is broken, or
+  /// cannot be written.
+  bool restore(const std::string& id);
 
  private:
   struct Drawn;  ///< A sample with its pixels.
@@ -105,8 +108,12 @@ class TrainingSession {
   std::shared_ptr<const Drawn> drawn(const DraftSample& sample) const;
   void train();
   std::vector<std::string> warnings() const;
+  std::string classes_without_samples() const;
   std::vector<ColorSample> copied_samples() const;
-  void keep_present_table();
+  static void check_pixels(const std::vector<std::shared_ptr<const Drawn>>& samples);
+  void keep_present_table(const std::string& now);
+  void keep_present_samples(const std::string& now) const;
+  void note_table(const ColorsFile& colors);
   void write_images(const std::string& now);
   void judge();
 
@@ -114,6 +121,8 @@ class TrainingSession {
   const ColorRange range_;
   mutable std::mutex mutex_;  ///< Guards all below.
   std::condition_variable changed_;
+  std::vector<ColorClass> in_file_;     ///< Classes of the colors file that is there.
+  std::string trained_from_;            ///< The samples that it names.
   std::string refusal_, samples_text_;  ///< What the samples file said when it was read or written.
   std::vector<Image> images_;
   std::int64_t next_image_ = 1;
@@ -125,6 +134,7 @@ class TrainingSession {
   ColorTable table_;
   std::optional<std::int64_t> judged_version_;
   ColorQuality quality_;
+  std::vector<FormerColors> history_;  ///< As of the last time that it changed from here.
   bool ending_ = false;
   std::thread judge_;  ///< Last: it uses all of the above.
 };

@@ -116,10 +116,10 @@ TEST(TrainingSession, FormerTablesComeBack) {
   session.save(2, "");
   ASSERT_EQ(session.state().history.size(), 2u);
   const std::string id = session.state().history[1].id;
-  session.restore(id);
+  EXPECT_TRUE(session.restore(id));
   EXPECT_TRUE(read_colors(files.colors) == first);
   EXPECT_EQ(session.state().history.size(), 2u);  // the one before is still there
-  EXPECT_THAT(message_of([&] { session.restore("../colors"); }), HasSubstr("is no table of the history"));
+  EXPECT_FALSE(session.restore("../colors"));
 }
 
 TEST(TrainingSession, NobodysWorkIsUndoneByAnother) {
@@ -145,6 +145,44 @@ TEST(TrainingSession, NobodysWorkIsUndoneByAnother) {
     by_hand += entry.path().filename().string().starts_with("mine_2") && !entry.is_directory() &&
                read_text(entry.path(), 1000) == "# by hand\n[]\n";
   EXPECT_EQ(by_hand, 1);
+}
+
+// What is written can be read again, and what is too much is refused before anything is.
+TEST(TrainingSession, DraftsAreBounded) {
+  const TestFolder folder;
+  TrainingSession session(training_files(folder / "colors.yaml", {}), ColorRange::limited);
+  const auto image = session.add_image(picture(1));
+  TrainingDraft draft = two_colors(0, image.id);
+  draft.samples.assign(20'000'000 / (64 * 32) + 1, {image.id, ColorClass::green, PixelBox{0, 0, 64, 32}});
+  EXPECT_THAT(message_of([&] { session.set_draft(draft); }), HasSubstr("must have at most 20000000"));
+  draft.samples.assign(100, {image.id, ColorClass::green, std::vector<PixelPoint>(900, {1. / 3, 2. / 3})});
+  session.set_draft(draft);
+  EXPECT_THAT(message_of([&] { session.save(1, ""); }),
+              testing::AnyOf(HasSubstr("to be read again"), HasSubstr("no sample")));
+  EXPECT_FALSE(fs::exists(folder / "samples.yaml"));
+}
+
+TEST(TrainingSession, WhatIsReplacedIsKept) {
+  const TestFolder folder;
+  const TrainingFiles files = training_files(folder / "colors.yaml", {});
+  TrainingSession session(files, ColorRange::limited);
+  const auto image = session.add_image(picture(1));
+  session.set_draft(two_colors(0, image.id));
+  session.save(1, "");
+  const std::string first = read_text(files.samples, 10000);
+  TrainingDraft one = two_colors(1, image.id);
+  one.samples.resize(1);
+  EXPECT_THAT(session.set_draft(one).warnings, testing::Contains(HasSubstr("has red, of which there is no sample")));
+  session.save(2, "");
+  std::vector<fs::path> kept;
+  for (const auto& entry : fs::directory_iterator(folder / "samples_history")) kept.push_back(entry.path());
+  ASSERT_EQ(kept.size(), 1u);
+  EXPECT_EQ(read_samples(kept[0]).size(), 3u);
+  EXPECT_TRUE(fs::exists(read_samples(kept[0])[0].image));
+  // A broken table is put aside, and another taken in its place.
+  std::ofstream(files.colors) << "range: ful\n";
+  EXPECT_TRUE(session.restore(session.state().history.back().id));
+  EXPECT_NO_THROW(read_colors(files.colors));
 }
 
 // What could not be read is not written over.

@@ -1,8 +1,6 @@
 #include "tassilo/files/colors_history.h"
 
 #include <algorithm>
-#include <chrono>
-#include <ctime>
 #include <system_error>
 
 #include "tassilo/base/error.h"
@@ -21,7 +19,9 @@ fs::path history_folder(const fs::path& colors_file) {
 std::vector<FormerColors> read_history(const fs::path& colors_file) {
   std::vector<FormerColors> history;
   std::error_code error;
-  for (const auto& entry : fs::directory_iterator(history_folder(colors_file), error)) {
+  for (auto at = fs::directory_iterator(history_folder(colors_file), error); !error && at != fs::directory_iterator();
+       at.increment(error)) {
+    const fs::directory_entry& entry = *at;
     if (entry.path().extension() != ".yaml") continue;
     FormerColors former{entry.path().stem().string(), {}, ""};
     try {
@@ -47,15 +47,6 @@ std::string keep_in_history(const fs::path& colors_file, const ColorsFile& color
   for (int n = 2; fs::exists(folder / (id + ".yaml"), error); ++n) id = now + "-" + std::to_string(n);
   write_colors(folder / (id + ".yaml"), colors);
   return id;
-}
-
-std::string time_for_names() {
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H-%M-%SZ", &utc);
-  return text;
 }
 
 }  // namespace tassilo

@@ -24,7 +24,4 @@ std::vector<FormerColors> read_history(const std::filesystem::path& colors_file)
 /// twice. `now`: as in the id. Throws Error when it cannot be written.
 std::string keep_in_history(const std::filesystem::path& colors_file, const ColorsFile& colors, const std::string& now);
 
-/// The present time as ids and file names have it.
-std::string time_for_names();
-
 }  // namespace tassilo

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tassilo/files/test_folder.h"
+#include "tassilo/files/time_for_names.h"
 
 namespace tassilo {
 namespace {

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMostSamples = 10'000;
+constexpr std::size_t kMostSamples = 1'000;
 
 void read_options(const Map& map, TrainingOptions& options) {
   const auto numbers = training_numbers();

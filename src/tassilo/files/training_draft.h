@@ -27,7 +27,7 @@ struct TrainingDraft {
 
 /// Reads {"version": 3, "samples": [{"image": "2", "class": "green", "polygon": [..]}, ..], "options": {"closing_px":
 /// 7}, "brightness": {"green": [40, 180]}}; see docs/files.md for shapes. Options that are missing have their default.
-/// At most 10000 samples. Throws Error saying what is wrong where.
+/// At most 1000 samples. Throws Error saying what is wrong where.
 TrainingDraft draft_from_json(std::string_view text, std::string_view place);
 /// One sample as such a draft has it: {"image": ..}.
 std::string draft_sample_json(const DraftSample& sample);

@@ -67,7 +67,7 @@ struct MountDrifted {
 };
 /// Nothing while it is not certain, or too little to matter.
 std::optional<MountDrifted> drifted(const MountDrift& drift, const MountDriftOptions& options = {});
-/// "pitch +0.8 deg (sigma 0.1), height -12 mm (sigma 3); 17 cm off at 3 m": what is certain by itself.
+/// "pitch +0.8 deg (sigma 0.1), height -12 mm (sigma 3); places 3 m away are off by 17 cm": what is certain by itself.
 std::string to_text(const MountDrifted& drifted);
 
 }  // namespace tassilo

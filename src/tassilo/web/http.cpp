@@ -54,4 +54,8 @@ std::string_view content_type_of(std::string_view file_name) {
   return "application/octet-stream";
 }
 
+WebResponse refusal(int status, std::string_view why) {
+  return {status, "text/plain; charset=utf-8", std::string(why) + "\n"};
+}
+
 }  // namespace tassilo

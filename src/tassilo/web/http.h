@@ -23,6 +23,9 @@ struct WebResponse {
   std::string body;
 };
 
+/// Says why not, in plain text.
+WebResponse refusal(int status, std::string_view why);
+
 /// Answers what is no file and no channel. Called on a thread of its own, one request after the other: who takes long
 /// keeps other requests waiting, but neither files nor channels. What it throws is told as status 500.
 using WebHandler = std::function<WebResponse(const WebRequest&)>;

@@ -84,7 +84,10 @@ class Worker {
       const auto task = std::move(tasks_.front());
       tasks_.pop_front();
       lock.unlock();
-      task();
+      try {
+        task();
+      } catch (const std::exception&) {  // there is no memory for the answer, say: this connection is without one
+      }
     }
   }
 

@@ -32,7 +32,8 @@ struct WebCounts {
   std::int64_t dropped = 0;   ///< Messages that a slow client, or the server, passed over for newer ones.
 };
 
-/// Serves pages, requests and channels over HTTP/1.1 and WebSocket, in a thread of its own.
+/// Serves pages, requests and channels over HTTP/1.1 and WebSocket, in a thread of its own; requests are answered in
+/// another.
 ///
 /// A channel's message goes to each of its listeners; one that has not yet taken the message before gets the newest
 /// when it is ready, and nobody waits for it. Access is checked by `access_of` for every request; `/?token=...` sets

@@ -105,12 +105,19 @@ void Calibration::add_frames() {
       any = true;
     }
   if (!any) return;
-  for (int round = 0; round < kFrameRounds && any; ++round) {
-    fit(state_, 0);
-    sigmas_ = estimated_sigmas();
-    any = weigh_frames();
+  bool fits = true;
+  try {
+    for (int round = 0; round < kFrameRounds && any; ++round) {
+      fit(state_, 0);
+      sigmas_ = estimated_sigmas();
+      any = weigh_frames();
+    }
+  } catch (const Error&) {  // sides that are none can lead anywhere; the points alone stand
+    fits = false;
   }
-  if (!any) {
+  if (!fits) {
+    frames_rejected_ = "no camera explains them together with the dots";
+  } else if (!any) {
     frames_rejected_ = "the sides of frames are not straight or too little of them is seen";
   } else {
     // The better of two estimates that agree differs from the other by what its covariance is smaller.
