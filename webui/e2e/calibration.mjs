@@ -175,6 +175,7 @@ async function main(url, browser, screenshots, { target, model, views: wanted, "
     if (!by_hand) await show("automatic").click();
     await until("it goes on", async () => (await state()).is_automatic === !by_hand);
     await page.evaluate(() => document.activeElement?.blur());
+    await until("it can be solved", () => show("solve").isEnabled());
     await page.keyboard.press("s");
     await until("it is being worked out, or was", async () => {
       const { is_solving, is_automatic, result, failure } = await state();

@@ -201,6 +201,7 @@ export class MockCalibration {
   }
 
   solve() {
+    this.is_automatic = false;
     if (this.solving !== null) throw new Refused(409, "the camera is being worked out");
     if (this.views.length === 0) throw new Refused(409, "there are no views");
     this.failure = "";

@@ -352,13 +352,15 @@ class Run {
     RecycledString changes;
     if (auto chosen = live_ != nullptr ? live_->chosen() : nullptr) {
       configuration_ = std::move(chosen);
+      has_chosen_ = true;
       changes = "a changed one was taken over";
       tell_now(fmt::format("frame {}: as chosen in the browser\n", frame));
     }
     auto news = watch_ ? watch_->news() : std::nullopt;
     if (!news) return changes;
-    // A browser's save is loaded at once, and seen by the watch a moment later.
-    if (news->configuration && see_alike(news->configuration->setup, configuration_->setup))
+    // A browser's save is loaded at once, and found by the watch a moment later.
+    if (news->configuration && std::exchange(has_chosen_, false) &&
+        see_alike(news->configuration->setup, configuration_->setup))
       news->configuration = nullptr;
     if (live_ != nullptr) live_->told(*news);
     // A choice that was made after the files were read is in neither of them alone; the later load has both.
@@ -390,6 +392,7 @@ class Run {
   std::shared_ptr<const Configuration> drift_of_;  ///< Whose field `drift_target_` is.
   std::optional<FieldTarget> drift_target_;
   std::optional<Progress> progress_;
+  bool has_chosen_ = false;  ///< Taken over from a browser since the watch last had news.
   std::int64_t read_ = 0, done_ = 0;
   Clock::duration last_step_{};              ///< From frame to frame of a file that is played in real time.
   std::optional<ConfigurationWatch> watch_;  ///< Last: its thread uses the above.

@@ -5,7 +5,7 @@ import { random_table } from "../testing";
 import type { ColorTable } from "./classify";
 import type { ColorClass } from "./color_class";
 import { type Draft, draft_of, options_of, type Sample, with_option, with_sample } from "./draft";
-import { changed_elsewhere, TrainingModel } from "./training_model";
+import { changed_elsewhere, lost_with_the_program, TrainingModel } from "./training_model";
 
 const known: Option[] = [{ key: "closing_px", unit: "step", low: 1, high: 31, whole: true, meaning: "gaps", default: 5, value: 5, changed: false }];
 const sample = (x: number, color: ColorClass = "green"): Sample => ({ image: "a", class: color, rectangle: [x, 0, x + 4, 4] });
@@ -237,7 +237,7 @@ describe("a server that was started anew", () => {
     server.images = [picture("1", "b.png", true), picture("2", "a.png", true)];
     await clock.ring(2000);
     expect(model.draft.samples.map(({ image }) => image)).toEqual(["1"]);
-    expect(model.view.value.notice).toBe(changed_elsewhere);
+    expect(model.view.value.notice).toBe(lost_with_the_program(1));
     model.undo();
     await settle();
     expect(server.draft.samples.map((s) => [s.image, "rectangle" in s && s.rectangle[0]])).toEqual([["2", 1], ["1", 3]]);

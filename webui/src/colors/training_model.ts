@@ -42,6 +42,8 @@ const retry_ms = 1000;
 const quality_delay_ms = 700;
 const watch_ms = 2000;
 
+export const lost_with_the_program = (samples: number): string =>
+  `The program was started anew: ${samples === 1 ? "one sample" : `${samples} samples`} in pictures that were not saved went with it.`;
 export const changed_elsewhere = "Samples or parameters were changed elsewhere, in another browser or because the program was started anew. Those are shown now, and undo brings yours back.";
 
 /// The draft here, and the server that trains it. At most one request that changes something is on its way; what is edited meanwhile waits, and only its
@@ -210,7 +212,7 @@ export class TrainingModel {
   /// Theirs, when it is not what this page sent, is one more step: nothing of ours is lost.
   private take(training: Training): void {
     // Versions only grow, as long as it is the same server.
-    if (training.version < this.version) this.begin_anew(training);
+    const gone = training.version < this.version ? this.begin_anew(training) : 0;
     const { history } = this.view.value;
     const theirs = draft_of(training);
     const same = (draft: Draft | null): boolean => draft !== null && same_draft(draft, theirs, training.options);
@@ -233,11 +235,12 @@ export class TrainingModel {
     if (training.is_saved) this.saved = theirs;
     else if (same(this.saved)) this.saved = null;
     this.update({ is_saved: this.is_saved(this.draft) });
+    if (gone > 0) this.tell(lost_with_the_program(gone));
   }
 
   /// The server was started anew, and gives its pictures ids of its own: what is drawn here is kept where the picture is in a file, and is still there.
-  /// Steps before are not: their ids may mean others now.
-  private begin_anew(training: Training): void {
+  /// Steps before are not: their ids may mean others now. Returns how many samples went with their pictures.
+  private begin_anew(training: Training): number {
     const new_id = (id: string): string | null => {
       const before = this.view.value.training?.images.find((image) => image.id === id);
       const after = training.images.filter(({ name }) => name === before?.name);
@@ -250,7 +253,9 @@ export class TrainingModel {
     this.sent.clear();
     this.accepted = this.saved = null;
     this.seen = null;
+    const gone = this.draft.samples.length - samples.length;
     this.update({ history: History.of({ ...this.draft, samples }) });
+    return gone;
   }
 
   /// Sends until nothing is left to send. One at a time: who asks while it runs waits for the same.
