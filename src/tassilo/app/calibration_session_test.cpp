@@ -271,6 +271,8 @@ TEST(CalibrationSession, GivesTheTrueCameraAndSavesIt) {
   EXPECT_FALSE(session.state().result);
   EXPECT_EQ(session.state().views.size(), 11u);
   ASSERT_TRUE(solved(session).result);
+  EXPECT_FALSE(session.state().is_automatic) << "another view would drop the result";
+  session.change({.is_automatic = true});
   look_at(session, single(frame_at(200, {110, 90}, {.6, -.3, 1}, .6)));
   EXPECT_EQ(session.state().views.back().id, "13") << "no id is given twice";
   EXPECT_FALSE(session.state().result);

@@ -15,8 +15,13 @@ test("texts of targets become fields and the same text again", () => {
 });
 
 test("the same target has the same text, however it was typed", () => {
-  expect(text_of({ kind: "dots", columns: " 07", rows: "7 ", pitch: "0,0400", radius: ".01" })).toBe("dots:7x7:0.04:0.01");
-  expect(text_of({ kind: "checker", columns: "9", rows: "6", pitch: "25e-3", radius: "left over" })).toBe("checker:9x6:0.025");
+  expect(text_of({ kind: "dots", columns: " 07", rows: "7 ", pitch: "0,0400", radius: ".01", spacing: "" })).toBe("dots:7x7:0.04:0.01");
+  expect(text_of(fields_of("aprilgrid:6x6:0.025:0.3"))).toBe("aprilgrid:6x6:0.025:0.3");
+  expect(why_no_target(fields_of("aprilgrid:6x6:0.025:0.3"))).toBe("");
+  expect(why_no_target(fields_of("aprilgrid:6x1:0.025:0.3"))).toMatch(/^rows: is 1, must be 2 to 32/);
+  expect(why_no_target(fields_of("aprilgrid:32x32:0.025:0.3"))).toMatch(/1024 tags/);
+  expect(why_no_target(fields_of("aprilgrid:6x6:0.025:3"))).toMatch(/^spacing: is '3'/);
+  expect(text_of({ kind: "checker", columns: "9", rows: "6", pitch: "25e-3", radius: "left over", spacing: "" })).toBe("checker:9x6:0.025");
 });
 
 test("what is no target names the field, what it is and what it must be", () => {

@@ -4,7 +4,13 @@ import type { CalibrationSession } from "./calibration_session";
 import { in_millimeters, type TargetFields, text_of, why_no_target } from "./target";
 import { most_targets } from "./target_editor";
 
-const field_titles: readonly (readonly ["columns" | "rows" | "pitch" | "radius", string])[] = [["columns", "columns"], ["rows", "rows"], ["pitch", "pitch [m]"], ["radius", "radius [m]"]];
+type FieldTitles = readonly (readonly ["columns" | "rows" | "pitch" | "radius" | "spacing", string])[];
+const grid_titles: FieldTitles = [["columns", "columns"], ["rows", "rows"], ["pitch", "pitch [m]"]];
+const field_titles: Readonly<Record<TargetFields["kind"], FieldTitles>> = {
+  dots: [...grid_titles, ["radius", "radius [m]"]],
+  checker: grid_titles,
+  aprilgrid: [["columns", "tags across"], ["rows", "tags down"], ["pitch", "tag size [m]"], ["spacing", "gap, share of it"]],
+};
 
 /// What is held in front of the camera, and how to print it.
 export function TargetPane({ session }: { session: CalibrationSession }) {
@@ -46,21 +52,22 @@ function TargetRow({ session, row, fields, removable }: { session: CalibrationSe
           <select value={fields.kind} onChange={(event) => set({ kind: event.currentTarget.value as TargetFields["kind"] })}>
             <option value="dots">dots</option>
             <option value="checker">checkerboard</option>
+            <option value="aprilgrid">AprilGrid</option>
           </select>
         </label>
-        {field_titles.map(([name, title]) => (name === "radius" && fields.kind === "checker" ? null : (
+        {field_titles[fields.kind].map(([name, title]) => (
           <label key={name}>
             <span>{title}</span>
             <input type="text" inputMode="decimal" autocomplete="off" spellcheck={false} value={fields[name]} aria-invalid={why.startsWith(name)} data-field={name}
                    onInput={(event) => set({ [name]: event.currentTarget.value })} />
             {(name === "pitch" || name === "radius") && <small class="faint">{in_millimeters(fields[name])}</small>}
           </label>
-        )))}
+        ))}
       </div>
       {why !== "" && <p class="error" role="alert" data-show={`target-error-${row}`}>{why}</p>}
       {text !== null && (
         <p class="under faint">
-          {fields.kind === "checker" && "Columns and rows of inner corners. "}Print it with <code class="command" data-show={`target-command-${row}`}>tassilo calibrate target {text} --output target.pdf</code>
+          {fields.kind === "checker" && "Columns and rows of inner corners. "}{fields.kind === "aprilgrid" && "It may leave the image, so it reaches the corners. "}Print it with <code class="command" data-show={`target-command-${row}`}>tassilo calibrate target {text} --output target.pdf</code>
         </p>
       )}
       {removable && <button type="button" class="plain" aria-label={`remove target ${row + 1}`} onClick={() => session.targets.remove(row)}>remove</button>}
