@@ -329,6 +329,8 @@ class Serve(Served):
 
     @unittest.skipUnless(CALIBRATION.is_dir(), "needs ../shared/data/msl98/calibration")
     def test_a_camera_is_calibrated_saved_and_taken_over(self):
+        if "libasan" in subprocess.run(["ldd", self.program], capture_output=True, text=True).stdout:
+            self.skipTest("sanitized, it takes seconds to look at an image")
         folder = pathlib.Path(tempfile.mkdtemp(dir=self.folder))
         for name in ("div.yaml", "div.png"):
             shutil.copy(self.folder / name, folder)

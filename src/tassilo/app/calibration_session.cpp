@@ -22,8 +22,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr auto kLookOn = std::chrono::seconds(3);      ///< After somebody asked.
-constexpr auto kCaptureOn = std::chrono::seconds(60);  ///< The same, for views that are captured by themselves.
+constexpr auto kLookOn = std::chrono::seconds(3);        ///< After somebody asked.
+constexpr auto kLongestLook = std::chrono::seconds(20);  ///< On a slow machine, with all kinds of targets.
+constexpr auto kCaptureOn = std::chrono::seconds(60);    ///< The same, for views that are captured by themselves.
 constexpr auto kBetweenLooks = std::chrono::milliseconds(100);  ///< Motion shows, and the vision keeps its cores.
 constexpr double kRest = .0025, kOtherPlace = .05;              ///< Of the image's diagonal.
 constexpr double kOtherSize = .15;                              ///< Relative; a turn of 9 degrees is as much.
@@ -324,7 +325,10 @@ void CalibrationSession::capture_next(std::chrono::milliseconds patience) {
   waiting_.reset();  // it is from before
   is_capture_asked_ = true;
   ++asked_number_;
-  const bool came = looked_.wait_for(lock, patience, [&] { return ending_ || !is_on_ || !is_capture_asked_; });
+  const auto is_answered = [&] { return ending_ || !is_on_ || !is_capture_asked_; };
+  bool came = looked_.wait_for(lock, patience, is_answered);
+  // A frame is there; looking for targets may take longer than waiting for one.
+  if (!came && (is_looking_ || waiting_)) came = looked_.wait_for(lock, kLongestLook, is_answered);
   if (is_capture_asked_) {
     is_capture_asked_ = false;
     throw Error("view", came          ? "was not captured: calibration has ended"
