@@ -14,8 +14,8 @@
 #include "tassilo/files/atomic_file.h"
 #include "tassilo/files/camera_file.h"
 #include "tassilo/files/colors_history.h"
+#include "tassilo/files/kept_copies.h"
 #include "tassilo/files/text.h"
-#include "tassilo/files/time_for_names.h"
 
 namespace tassilo {
 namespace {
@@ -106,20 +106,15 @@ ReadCamera read_whole(const fs::path& file) {
 
 /// Puts what a file says into the folder STEM_history beside it, once.
 void keep_in_history(const fs::path& file, const std::string& text) {
-  const fs::path folder = file.parent_path() / (file.stem().string() + "_history");
+  const fs::path folder = history_folder(file);
   std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw Error(folder.string(), "cannot be created: " + error.message());
   for (auto at = fs::directory_iterator(folder, error); !error && at != fs::directory_iterator(); at.increment(error)) {
     std::error_code unreadable;
     if (at->is_regular_file(unreadable) && at->file_size(unreadable) == text.size() && !unreadable &&
         read_text(at->path(), kMostFileBytes) == text)
       return;
   }
-  const std::string now = time_for_names();
-  fs::path kept = folder / (now + ".yaml");
-  for (int n = 2; fs::exists(kept, error); ++n) kept = folder / fmt::format("{}-{}.yaml", now, n);
-  write_atomically(kept, text);
+  write_atomically(unused_file(folder, time_for_names(), ".yaml"), text);
 }
 
 }  // namespace

@@ -323,13 +323,20 @@ WebResponse LiveView::train(const WebRequest& request) {
 
 WebResponse LiveView::calibrate(const WebRequest& request) {
   CalibrationSession* session = nullptr;
+  std::string camera;
   {
     const std::lock_guard lock(mutex_);
     if (!now_) return refusal(503, "the source is not open yet");
-    const std::string camera = file_of(*now_, kCameraRole);
-    if (!calibration_) calibration_ = std::make_unique<CalibrationSession>(camera);
+    camera = file_of(*now_, kCameraRole);
     session = calibration_.get();
+  }
+  if (session != nullptr) {
     session->set_file(camera);
+  } else {
+    auto first = std::make_unique<CalibrationSession>(camera);  // reads the file: the vision does not wait for that
+    session = first.get();
+    const std::lock_guard lock(mutex_);
+    calibration_ = std::move(first);
   }
   return answer_calibration(*session, request, [this] { take_over_files(); });
 }

@@ -8,8 +8,8 @@
 
 #include "tassilo/app/recorded_configuration.h"
 #include "tassilo/base/error.h"
+#include "tassilo/files/kept_copies.h"
 #include "tassilo/files/scene_json.h"
-#include "tassilo/files/time_for_names.h"
 
 namespace tassilo {
 namespace {

@@ -103,6 +103,20 @@ Region sample_region(const SampleShape& shape, const FrameView& frame, const std
   return erosion(region, rectangle(3, 3));
 }
 
+void for_sample_images(const std::vector<TrainingSample>& list, const std::string& list_name, ColorRange images_range,
+                       const std::function<void(const SampleImage&)>& use) {
+  for (const WantedFrames& wanted : wanted_frames(list)) {
+    const std::vector<std::int64_t> indices(wanted.indices.begin(), wanted.indices.end());
+    SourceOptions options;
+    options.location = wanted.image.string();
+    options.images_range = images_range;
+    const std::vector<Frame> frames =
+        read_at(fmt::format("{}:{}", list_name, wanted.line_of_last), [&] { return read_frames(options, indices); });
+    for (std::size_t i = 0; i < frames.size(); ++i)
+      use({wanted.image, indices[i], indices.size() > 1 || indices[i] > 0, wanted.first_line, frames[i]});
+  }
+}
+
 LoadedSamples load_samples(const std::string& file, ColorRange images_range, const Warn& warn) {
   const std::vector<TrainingSample> list = read_samples(file);
   if (list.empty()) throw Error(file, "holds no samples, must hold at least one");
@@ -115,44 +129,36 @@ LoadedSamples load_samples(const std::string& file, ColorRange images_range, con
   }
   int group = 0;
   int first_line = 0;  // of the file's samples
-  for (const WantedFrames& frames : wanted_frames(list)) {
-    const fs::path& image = frames.image;
-    const std::vector<std::int64_t> indices(frames.indices.begin(), frames.indices.end());
-    const std::string place_of_last = fmt::format("{}:{}", file, frames.line_of_last);
-    SourceOptions options;
-    options.location = image.string();
-    options.images_range = images_range;
-    const std::vector<Frame> pictures = read_at(place_of_last, [&] { return read_frames(options, indices); });
-    for (std::size_t i = 0; i < pictures.size(); ++i, ++group) {
-      const Frame& frame = pictures[i];
-      if (loaded.range && *loaded.range != frame.range)
-        throw Error(fmt::format("{}:{}", file, frames.first_line),
-                    fmt::format("{} has {} color range, the image in line {} has {}; a table is for one range",
-                                image.string(), to_string(frame.range), first_line, to_string(*loaded.range)));
-      if (!loaded.range) first_line = frames.first_line;
-      loaded.range = frame.range;
-      std::vector<std::pair<const TrainingSample*, Region>> drawn;
-      for (const TrainingSample& sample : list) {
-        if (sample.image != image || sample.frame != indices[i]) continue;
-        const std::string place = fmt::format("{}:{}", file, sample.line);
-        Region region = sample_region(sample.shape, frame.view, place);
-        const auto whole = area(region);
-        std::vector<YuvPixel> pixels = pixels_of(frame.view, region);
-        if (pixels.empty()) {
-          warn(place, fmt::format("{} has no pixel in the image ({}x{}); ignored", to_string(sample.color),
-                                  frame.view.width(), frame.view.height()));
-          continue;
-        }
-        if (static_cast<std::int64_t>(pixels.size()) < whole)
-          warn(place, fmt::format("{} leaves the image; {} of {} pixels are used", to_string(sample.color),
-                                  pixels.size(), whole));
-        loaded.samples.push_back({sample.color, group, std::move(pixels)});
-        drawn.emplace_back(&sample, std::move(region));
+  for_sample_images(list, file, images_range, [&](const SampleImage& image) {
+    const Frame& frame = image.frame;
+    if (loaded.range && *loaded.range != frame.range)
+      throw Error(fmt::format("{}:{}", file, image.first_line),
+                  fmt::format("{} has {} color range, the image in line {} has {}; a table is for one range",
+                              image.file.string(), to_string(frame.range), first_line, to_string(*loaded.range)));
+    if (!loaded.range) first_line = image.first_line;
+    loaded.range = frame.range;
+    std::vector<std::pair<const TrainingSample*, Region>> drawn;
+    for (const TrainingSample& sample : list) {
+      if (sample.image != image.file || sample.frame != image.index) continue;
+      const std::string place = fmt::format("{}:{}", file, sample.line);
+      Region region = sample_region(sample.shape, frame.view, place);
+      const auto whole = area(region);
+      std::vector<YuvPixel> pixels = pixels_of(frame.view, region);
+      if (pixels.empty()) {
+        warn(place, fmt::format("{} has no pixel in the image ({}x{}); ignored", to_string(sample.color),
+                                frame.view.width(), frame.view.height()));
+        continue;
       }
-      loaded.images += !drawn.empty();
-      warn_of_overlap(drawn, file, warn);
+      if (static_cast<std::int64_t>(pixels.size()) < whole)
+        warn(place, fmt::format("{} leaves the image; {} of {} pixels are used", to_string(sample.color), pixels.size(),
+                                whole));
+      loaded.samples.push_back({sample.color, group, std::move(pixels)});
+      drawn.emplace_back(&sample, std::move(region));
     }
-  }
+    ++group;
+    loaded.images += !drawn.empty();
+    warn_of_overlap(drawn, file, warn);
+  });
   return loaded;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -28,6 +29,20 @@ struct LoadedSamples {
 /// The pixels that a shape means in an image of this size; what is far outside of it is cut. The rim of a mask, where
 /// two colors mix, is left out. Throws Error(place, ..) when a mask cannot be read or has another size.
 Region sample_region(const SampleShape& shape, const FrameView& frame, const std::string& place);
+
+/// A picture that samples were drawn in.
+struct SampleImage {
+  std::filesystem::path file;
+  std::int64_t index = 0;       ///< In the file.
+  bool is_one_of_many = false;  ///< Other frames of the file are asked for, too, or it is not the first.
+  int first_line = 0;           ///< Of the samples file, that asks for the file.
+  Frame frame;
+};
+/// Reads the images that samples name, each once: files in the order of `list`, their frames by index. `list_name` is
+/// how messages call the samples file. RGB images become BT.601 in `images_range`. Throws Error with the place in the
+/// samples file that asked for what cannot be read.
+void for_sample_images(const std::vector<TrainingSample>& list, const std::string& list_name, ColorRange images_range,
+                       const std::function<void(const SampleImage&)>& use);
 
 /// Reads a samples file and the images it names; RGB images become BT.601 in `images_range`. Throws Error with the
 /// place in the file where a sample or an image is wrong, and when it holds no samples.

@@ -13,11 +13,10 @@
 #include "tassilo/app/training.h"
 #include "tassilo/base/error.h"
 #include "tassilo/files/atomic_file.h"
+#include "tassilo/files/kept_copies.h"
 #include "tassilo/files/text.h"
-#include "tassilo/files/time_for_names.h"
 #include "tassilo/record/lossless_video.h"
 #include "tassilo/region/algebra.h"
-#include "tassilo/source/frame_source.h"
 
 namespace tassilo {
 namespace {
@@ -55,11 +54,6 @@ void write_still(const fs::path& file, const Frame& frame) {
     throw;
   }
   remove();
-}
-
-/// That a picture is kept in.
-std::size_t bytes_of(const FrameView& view) {
-  return 2 * static_cast<std::size_t>(view.width()) * static_cast<std::size_t>(view.height());
 }
 
 double share(std::int64_t part, std::int64_t whole) {
@@ -130,33 +124,26 @@ void TrainingSession::load_samples_file() {
   samples_text_ = text_of(files_.samples);
   if (samples_text_.empty()) return;
   const auto list = samples_from_yaml(samples_text_, files_.samples);
-  std::map<fs::path, std::set<std::int64_t>> wanted;
-  for (const TrainingSample& sample : list) wanted[sample.image].insert(sample.frame);
+  auto by_file = list;
+  std::ranges::stable_sort(by_file, {}, &TrainingSample::image);
   std::map<std::pair<fs::path, std::int64_t>, std::string> ids;
   std::size_t size = 0;
-  for (const auto& [file, indices] : wanted) {
-    SourceOptions source;
-    source.location = file.string();
-    source.images_range = range_;
-    const std::vector<std::int64_t> order(indices.begin(), indices.end());
-    const std::vector<Frame> frames = read_frames(source, order);
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-      if (frames[i].range != range_)
-        throw Error(files_.samples.string(),
-                    fmt::format("{} has {} color range, what is seen now has {}; a table is for one range",
-                                file.string(), to_string(frames[i].range), to_string(range_)));
-      size += bytes_of(frames[i].view);
-      if (images_.size() == kMostImages || size > kMostImageBytes)
-        throw Error(files_.samples.string(), fmt::format("has samples in more than {} pictures or {} MB of them",
-                                                         kMostImages, kMostImageBytes >> 20));
-      const bool is_one_of_many = order.size() > 1 || order[i] > 0;
-      images_.push_back(
-          {std::to_string(next_image_++),
-           is_one_of_many ? fmt::format("{}, frame {}", file.filename().string(), order[i]) : file.filename().string(),
-           std::make_shared<const std::string>(frame_bytes(frames[i])), file, order[i]});
-      ids[{file, order[i]}] = images_.back().id;
-    }
-  }
+  for_sample_images(by_file, files_.samples.string(), range_, [&](const SampleImage& image) {
+    if (image.frame.range != range_)
+      throw Error(files_.samples.string(),
+                  fmt::format("{} has {} color range, what is seen now has {}; a table is for one range",
+                              image.file.string(), to_string(image.frame.range), to_string(range_)));
+    auto bytes = std::make_shared<const std::string>(frame_bytes(image.frame));
+    size += bytes->size();
+    if (images_.size() == kMostImages || size > kMostImageBytes)
+      throw Error(files_.samples.string(), fmt::format("has samples in more than {} pictures or {} MB of them",
+                                                       kMostImages, kMostImageBytes >> 20));
+    const std::string name = image.file.filename().string();
+    images_.push_back({std::to_string(next_image_++),
+                       image.is_one_of_many ? fmt::format("{}, frame {}", name, image.index) : name, std::move(bytes),
+                       image.file, image.index});
+    ids[{image.file, image.index}] = images_.back().id;
+  });
   for (const TrainingSample& sample : list) {
     const DraftSample one{ids.at({sample.image, sample.frame}), sample.color, sample.shape};
     if (std::holds_alternative<SampleMask>(one.shape)) masks_.push_back(one);
@@ -229,7 +216,7 @@ std::vector<std::string> TrainingSession::warnings() const {
   ColorQuality quality;
   const Classifier classifier(table_);
   for (const auto& one : draft_) {
-    add_quality(quality, classifier, {*one->pixels});
+    add_quality(quality, classifier, {one->pixels.get(), 1});
     if (one->pixels->pixels.empty())
       warnings.push_back(fmt::format("a sample of {} has no pixel in its picture", to_string(one->sample.color)));
   }
@@ -392,19 +379,15 @@ void TrainingSession::keep_present_table(const std::string& now) {
     write_atomically(kept, text_of(files_.colors));
     return;
   }
-  keep_in_history(files_.colors, *present, now);
+  keep_in_history(files_.colors, *present, now, history_);
 }
 
 /// In a folder of their own, with paths that hold there.
 void TrainingSession::keep_present_samples(const std::string& now) const {
   if (samples_text_.empty()) return;
-  const fs::path folder = files_.samples.parent_path() / (files_.samples.stem().string() + "_history");
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw Error(folder.string(), "cannot be created: " + error.message());
-  fs::path file = folder / (now + ".yaml");
-  for (int n = 2; fs::exists(file, error); ++n) file = folder / fmt::format("{}-{}.yaml", now, n);
-  write_atomically(file, samples_yaml(samples_from_yaml(samples_text_, files_.samples), folder));
+  const fs::path folder = history_folder(files_.samples);
+  const std::string text = samples_yaml(samples_from_yaml(samples_text_, files_.samples), folder);
+  write_atomically(unused_file(folder, now, ".yaml"), text);
 }
 
 void TrainingSession::save(std::int64_t version, const std::string& notes) {
@@ -446,11 +429,11 @@ void TrainingSession::save(std::int64_t version, const std::string& notes) {
   if (text != samples_text_) keep_present_samples(now);
   write_atomically(files_.samples, text);
   samples_text_ = text;
+  history_ = read_history(files_.colors);
   keep_present_table(now);
   write_colors(files_.colors, colors);
   note_table(colors);
-  keep_in_history(files_.colors, colors, now);  // after the former one, also within a second
-  history_ = read_history(files_.colors);
+  keep_in_history(files_.colors, colors, now, history_);  // after the former one, also within a second
   saved_version_ = version_;
 }
 
@@ -468,7 +451,6 @@ bool TrainingSession::restore(const std::string& id) {
   keep_present_table(time_for_names());
   write_colors(files_.colors, colors);
   note_table(colors);
-  history_ = read_history(files_.colors);
   return true;
 }
 

@@ -29,7 +29,7 @@ std::optional<double> ColorQuality::precision(ColorClass color) const {
   return static_cast<double>(confusion[label(color)][label(color)]) / static_cast<double>(found);
 }
 
-void add_quality(ColorQuality& quality, const Classifier& classifier, const std::vector<ColorSample>& samples) {
+void add_quality(ColorQuality& quality, const Classifier& classifier, std::span<const ColorSample> samples) {
   const ColorTable& table = classifier.table();
   for (const ColorSample& sample : samples)
     for (const YuvPixel& p : sample.pixels) {

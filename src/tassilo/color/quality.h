@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 
 #include "tassilo/color/segment.h"
 #include "tassilo/color/train.h"
@@ -21,7 +22,7 @@ struct ColorQuality {
 };
 
 /// Adds the verdict of a table over samples to `quality`. O(pixels).
-void add_quality(ColorQuality& quality, const Classifier& classifier, const std::vector<ColorSample>& samples);
+void add_quality(ColorQuality& quality, const Classifier& classifier, std::span<const ColorSample> samples);
 
 /// Quality on pixels the table was not trained with: each of up to five folds of sample groups is held out once, and
 /// tables trained from the others judge it. With a single group the samples themselves are dealt out to the folds.

@@ -4,15 +4,12 @@
 #include <system_error>
 
 #include "tassilo/base/error.h"
+#include "tassilo/files/kept_copies.h"
 
 namespace tassilo {
 namespace {
 
 namespace fs = std::filesystem;
-
-fs::path history_folder(const fs::path& colors_file) {
-  return colors_file.parent_path() / (colors_file.stem().string() + "_history");
-}
 
 }  // namespace
 
@@ -35,18 +32,15 @@ std::vector<FormerColors> read_history(const fs::path& colors_file) {
   return history;
 }
 
-std::string keep_in_history(const fs::path& colors_file, const ColorsFile& colors, const std::string& now) {
-  const fs::path folder = history_folder(colors_file);
-  const std::vector<FormerColors> history = read_history(colors_file);
+std::string keep_in_history(const fs::path& colors_file, const ColorsFile& colors, const std::string& now,
+                            std::vector<FormerColors>& history) {
   for (const FormerColors& former : history)
     if (former.fault.empty() && former.colors == colors) return former.id;
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw Error(folder.string(), "cannot be created: " + error.message());
-  std::string id = now;
-  for (int n = 2; fs::exists(folder / (id + ".yaml"), error); ++n) id = now + "-" + std::to_string(n);
-  write_colors(folder / (id + ".yaml"), colors);
-  return id;
+  const fs::path file = unused_file(history_folder(colors_file), now, ".yaml");
+  write_colors(file, colors);
+  history.push_back({file.stem().string(), read_colors(file), ""});
+  std::ranges::sort(history, std::greater<>{}, &FormerColors::id);
+  return file.stem().string();
 }
 
 }  // namespace tassilo

@@ -20,8 +20,10 @@ struct FormerColors {
 /// Newest first; empty without such a folder. Reads all of them: about a millisecond each.
 std::vector<FormerColors> read_history(const std::filesystem::path& colors_file);
 
-/// Puts a table there and returns its id; a table that is already there, with the same provenance, is not put there
-/// twice. `now`: as in the id. Throws Error when it cannot be written.
-std::string keep_in_history(const std::filesystem::path& colors_file, const ColorsFile& colors, const std::string& now);
+/// Puts a table there, and into `history`, which is what `read_history` gave; returns its id. A table that is already
+/// there, with the same provenance, is not put there twice. `now`: as in the id. Throws Error when it cannot be
+/// written.
+std::string keep_in_history(const std::filesystem::path& colors_file, const ColorsFile& colors, const std::string& now,
+                            std::vector<FormerColors>& history);
 
 }  // namespace tassilo

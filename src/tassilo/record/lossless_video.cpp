@@ -7,16 +7,14 @@ extern "C" {
 }
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <new>
 
 #include "tassilo/base/contract.h"
 #include "tassilo/base/error.h"
 #include "tassilo/files/frames_file.h"
-#include "tassilo/record/internal/av_owned.h"
+#include "tassilo/record/internal/video_output.h"
 #include "tassilo/record/json_lines_writer.h"
 
 namespace tassilo {
@@ -60,18 +58,14 @@ std::string text_of(const FrameView& view, ColorRange range) {
 class LosslessVideo::Encoder {
  public:
   Encoder(const std::string& target, const Frame& first)
-      : target_(target),
-        shape_(text_of(first.view, first.range)),
-        packet_(av_owned(av_packet_alloc())),
-        frame_(av_owned(av_frame_alloc())),
-        stamps_(stamps_file_of(target).string()) {
+      : out_(target), shape_(text_of(first.view, first.range)), stamps_(stamps_file_of(target).string()) {
     open_codec(first);
-    open_file();
+    out_.open("matroska");
   }
 
   void write(const Frame& frame) {
     if (const std::string shape = text_of(frame.view, frame.range); shape != shape_)
-      throw Error(target_,
+      throw Error(out_.file,
                   "frame " + std::to_string(frame.index) + " is " + shape + ", must be " + shape_ + " like the first");
     const std::string line = frame_stamp_line({frame.index, frame.t, frame.image});
     stamps_.write(line);
@@ -80,102 +74,77 @@ class LosslessVideo::Encoder {
     const double ms = std::clamp(1000 * (frame.t - start_), 0., 1e15);
     last_stamp_ = frames_ == 0 ? 0 : std::max<std::int64_t>(std::llround(ms), last_stamp_ + 1);
     ++frames_;
-    must(av_frame_make_writable(frame_.get()), "be encoded");
-    copy_planes(frame.view, *frame_);
-    frame_->pts = last_stamp_;
-    must(avcodec_send_frame(codec_.get(), frame_.get()), "be encoded");
+    out_.must(av_frame_make_writable(out_.frame.get()), "be encoded");
+    copy_planes(frame.view, *out_.frame);
+    out_.frame->pts = last_stamp_;
+    out_.must(avcodec_send_frame(out_.codec.get(), out_.frame.get()), "be encoded");
     drain();
     // Ends the cluster: what is on the disk is whole.
-    must(av_write_frame(output_.get(), nullptr), "be written");
-    avio_flush(output_->pb);
-    must(output_->pb->error, "be written");
+    out_.must(av_write_frame(out_.format.get(), nullptr), "be written");
+    avio_flush(out_.format->pb);
+    out_.must(out_.format->pb->error, "be written");
   }
 
   void finish() {
-    must(avcodec_send_frame(codec_.get(), nullptr), "be encoded");
+    out_.must(avcodec_send_frame(out_.codec.get(), nullptr), "be encoded");
     drain();
-    must(av_write_trailer(output_.get()), "be written");
-    avio_flush(output_->pb);
-    must(output_->pb->error, "be written");
+    out_.must(av_write_trailer(out_.format.get()), "be written");
+    avio_flush(out_.format->pb);
+    out_.must(out_.format->pb->error, "be written");
     bytes_ = bytes();
-    must(avio_closep(&output_->pb), "be written");
+    out_.must(avio_closep(&out_.format->pb), "be written");
   }
 
   std::int64_t bytes() const {
-    return output_->pb != nullptr ? std::max<std::int64_t>(avio_size(output_->pb), 0) + stamp_bytes_ : bytes_;
+    return out_.format->pb != nullptr ? std::max<std::int64_t>(avio_size(out_.format->pb), 0) + stamp_bytes_ : bytes_;
   }
 
  private:
-  void must(int code, const char* what) const {
-    if (code >= 0) return;
-    std::array<char, AV_ERROR_MAX_STRING_SIZE> reason{};
-    av_strerror(code, reason.data(), reason.size());
-    throw Error(target_, std::string("cannot ") + what + ": " + reason.data());
-  }
-
   void open_codec(const Frame& first) {
     const FrameView& view = first.view;
     const bool is_odd = view.width() % 2 != 0 || view.height() % 2 != 0;
     const AVCodec* encoder = is_odd ? nullptr : avcodec_find_encoder(AV_CODEC_ID_UTVIDEO);
     if (encoder == nullptr) encoder = avcodec_find_encoder(AV_CODEC_ID_FFV1);
-    if (encoder == nullptr) throw Error(target_, "cannot be encoded: FFmpeg has neither Ut Video nor FFV1 here");
-    codec_ = av_owned(avcodec_alloc_context3(encoder));
-    codec_->width = view.width();
-    codec_->height = view.height();
-    codec_->pix_fmt = is_420(view.format()) ? AV_PIX_FMT_YUV420P : AV_PIX_FMT_YUV422P;
-    codec_->time_base = {1, 1000};
-    codec_->color_range = first.range == ColorRange::full ? AVCOL_RANGE_JPEG : AVCOL_RANGE_MPEG;
-    codec_->colorspace = AVCOL_SPC_SMPTE170M;  // BT.601
-    codec_->thread_count = 1;
-    codec_->gop_size = 1;
+    if (encoder == nullptr) throw Error(out_.file, "cannot be encoded: FFmpeg has neither Ut Video nor FFV1 here");
+    out_.codec = av_owned(avcodec_alloc_context3(encoder));
+    out_.codec->width = view.width();
+    out_.codec->height = view.height();
+    out_.codec->pix_fmt = is_420(view.format()) ? AV_PIX_FMT_YUV420P : AV_PIX_FMT_YUV422P;
+    out_.codec->time_base = {1, 1000};
+    out_.codec->color_range = first.range == ColorRange::full ? AVCOL_RANGE_JPEG : AVCOL_RANGE_MPEG;
+    out_.codec->colorspace = AVCOL_SPC_SMPTE170M;  // BT.601
+    out_.codec->thread_count = 1;
+    out_.codec->gop_size = 1;
     if (encoder->id == AV_CODEC_ID_UTVIDEO) {
-      must(av_opt_set(codec_->priv_data, "pred", "median", 0), "be encoded");
+      out_.must(av_opt_set(out_.codec->priv_data, "pred", "median", 0), "be encoded");
     } else {
       // Level 3 has checksums, but FFmpeg 5.1 cuts a picture into four slices and loses those that are empty.
       constexpr int least_of_slices = 4;  // [px]
-      codec_->level = std::min(view.width(), view.height()) < least_of_slices ? 1 : 3;
-      must(av_opt_set(codec_->priv_data, "coder", "rice", 0), "be encoded");
+      out_.codec->level = std::min(view.width(), view.height()) < least_of_slices ? 1 : 3;
+      out_.must(av_opt_set(out_.codec->priv_data, "coder", "rice", 0), "be encoded");
     }
-    frame_->format = codec_->pix_fmt;
-    frame_->width = codec_->width;
-    frame_->height = codec_->height;
-    frame_->color_range = codec_->color_range;
-    must(av_frame_get_buffer(frame_.get(), 0), "be encoded");
-  }
-
-  void open_file() {
-    AVFormatContext* output = nullptr;
-    must(avformat_alloc_output_context2(&output, nullptr, "matroska", target_.c_str()), "be written");
-    output_ = av_owned(output);
-    if ((output->oformat->flags & AVFMT_GLOBALHEADER) != 0) codec_->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
-    must(avcodec_open2(codec_.get(), nullptr, nullptr), "be encoded");
-    stream_ = avformat_new_stream(output, nullptr);
-    if (stream_ == nullptr) throw std::bad_alloc();
-    stream_->time_base = codec_->time_base;
-    must(avcodec_parameters_from_context(stream_->codecpar, codec_.get()), "be encoded");
-    must(avio_open(&output->pb, ("file:" + target_).c_str(), AVIO_FLAG_WRITE), "be opened for writing");
-    must(avformat_write_header(output, nullptr), "be written");
+    out_.frame->format = out_.codec->pix_fmt;
+    out_.frame->width = out_.codec->width;
+    out_.frame->height = out_.codec->height;
+    out_.frame->color_range = out_.codec->color_range;
+    out_.must(av_frame_get_buffer(out_.frame.get(), 0), "be encoded");
   }
 
   void drain() {
-    while (avcodec_receive_packet(codec_.get(), packet_.get()) >= 0) {
+    while (avcodec_receive_packet(out_.codec.get(), out_.packet.get()) >= 0) {
       // Matroska keeps it of the last frame only, as the end of the video; a guess might look like frames that are
       // missing.
-      packet_->duration = 1;
-      av_packet_rescale_ts(packet_.get(), codec_->time_base, stream_->time_base);
-      packet_->stream_index = stream_->index;
-      const int code = av_write_frame(output_.get(), packet_.get());
-      av_packet_unref(packet_.get());
-      must(code, "be written");
+      out_.packet->duration = 1;
+      av_packet_rescale_ts(out_.packet.get(), out_.codec->time_base, out_.stream->time_base);
+      out_.packet->stream_index = out_.stream->index;
+      const int code = av_write_frame(out_.format.get(), out_.packet.get());
+      av_packet_unref(out_.packet.get());
+      out_.must(code, "be written");
     }
   }
 
-  std::string target_, shape_;
-  Av<AVPacket> packet_;
-  Av<AVFrame> frame_;
-  Av<AVCodecContext> codec_;
-  Av<AVFormatContext> output_;
-  AVStream* stream_ = nullptr;
+  VideoOutput out_;
+  std::string shape_;
   JsonLinesWriter stamps_;
   double start_ = 0;
   std::int64_t last_stamp_ = 0, frames_ = 0, stamp_bytes_ = 0, bytes_ = 0;
@@ -183,10 +152,7 @@ class LosslessVideo::Encoder {
 
 LosslessVideo::LosslessVideo(const std::string& target) : target_(target) {
   if (fs::path(target).extension() != ".mkv") throw Error(target, "is no name for a recording, must end in .mkv");
-  const fs::path folder = fs::path(target).parent_path();
-  if (!folder.empty() && !fs::is_directory(folder)) throw Error(folder.string(), "is no folder to write a video into");
-  // Its default would print; a callback that another part has set is not touched by this.
-  av_log_set_level(AV_LOG_QUIET);
+  prepare_video(target);
 }
 
 LosslessVideo::~LosslessVideo() {
