@@ -5,8 +5,7 @@
 // COMMAND starts a server that prints its address (http://...); it is ended afterwards. Exit code 77: skipped, no browser.
 // The source must go on for a minute, see a ball and free space, and be a field where `localization: boundary` has walls to go by.
 import assert from "node:assert/strict";
-import path from "node:path";
-import { patience_ms, run, until } from "./run.mjs";
+import { open_page, run, until } from "./run.mjs";
 
 /// The scenes a page receives, by their frame. A recording that begins anew has the same frames again; the last one counts.
 function scenes_of(page) {
@@ -86,44 +85,22 @@ function colors_on(page, selector) {
   });
 }
 
-async function option_state(base, key) {
-  const stages = await (await fetch_api(base, "/api/stages")).json();
+async function option_state(api, key) {
+  const stages = await api("GET", "/api/stages");
   for (const stage of stages) {
     for (const option of [...stage.options, ...stage.alternatives.flatMap((a) => a.options)]) if (option.key === key) return option;
   }
   throw new Error(`the server has no option ${key}`);
 }
-let fetch_api;
 
 async function main(url, browser, screenshots) {
-  const context = await browser.newContext({ viewport: { width: 1440, height: 1000 }, colorScheme: "light" });
-  context.setDefaultTimeout(patience_ms);
-  fetch_api = async (base, name) => {
-    const response = await context.request.get(new URL(name, base).href);
-    return { json: () => response.json() };
-  };
-  const page = await context.newPage();
-  const faults = [];
-  page.on("pageerror", (error) => faults.push(`error: ${error.message}`));
-  page.on("console", (message) => {
-    // A refused change is meant to be refused; the browser tells it as an error of the network.
-    if (message.type() === "error" && !/status of 400/.test(message.text())) faults.push(`console: ${message.text()}`);
-  });
+  // A refused change is meant to be refused.
+  const { context, page, faults, picture, step, api, end } = await open_page(browser, url, { screenshots, prefix: "", refusals: /status of 400/ });
   const origin = new URL(url).origin;
   page.on("request", (request) => {
     if (!/^(data|blob):/.test(request.url()) && new URL(request.url()).origin !== origin) faults.push(`request elsewhere: ${request.url()}`);
   });
   const scenes = scenes_of(page);
-  let number = 0;
-  const picture = async (name) => {
-    if (screenshots === "") return;
-    await page.evaluate(() => scrollTo(0, 0));   // the bar stays at the top of the screen, not of the picture
-    await page.screenshot({ path: path.join(screenshots, `${String(++number).padStart(2, "0")}_${name}.png`), fullPage: true });
-  };
-  const step = async (name, work) => {
-    await work();
-    console.log(`ok: ${name}`);
-  };
   const view = (name) => page.getByRole("navigation").getByRole("link", { name }).click();
 
   await step("picture and scene arrive", async () => {
@@ -164,7 +141,7 @@ async function main(url, browser, screenshots) {
     await stop.press("Enter");
     await page.getByRole("button", { name: "Record", exact: true }).waitFor();
     const last = await until("it is finished", async () => {
-      const state = await (await fetch_api(url, "/api/recording")).json();
+      const state = await api("GET", "/api/recording");
       return !state.on && !state.finishing && state;
     });
     assert.deepEqual([last.trouble, last.dropped], ["", 0]);
@@ -177,7 +154,7 @@ async function main(url, browser, screenshots) {
     await view("Stages");
     await page.locator('[data-stage="localization"] input[value="boundary"]').click();
     await until("the server has it", async () => {
-      const stages = await (await fetch_api(url, "/api/stages")).json();
+      const stages = await api("GET", "/api/stages");
       return stages.find(({ key }) => key === "localization").alternatives.find(({ name }) => name === "boundary").chosen;
     });
     await until("scenes show it", () => scenes.last.pose === null || scenes.last.pose.kind !== "model");
@@ -186,23 +163,23 @@ async function main(url, browser, screenshots) {
   });
 
   await step("an option takes effect, is marked, and goes back", async () => {
-    const before = await option_state(url, "free_space_max_range");
+    const before = await option_state(api, "free_space_max_range");
     await page.getByRole("searchbox").fill("max_range");
     const row = page.locator('[data-option="free_space_max_range"]');
     await row.getByRole("textbox").fill("1.5");
     await row.getByRole("textbox").press("Enter");
-    await until("the server has it", async () => (await option_state(url, "free_space_max_range")).value === 1.5);
+    await until("the server has it", async () => (await option_state(api, "free_space_max_range")).value === 1.5);
     await until("scenes show it", () => scenes.last.free_space?.ranges.every((range) => range === null || range <= 1.5 + 1e-6));
     await row.getByText("changed", { exact: true }).waitFor();
     await picture("stages_search");
     await row.getByRole("button", { name: /^reset/ }).click();
-    await until("the server has the old one", async () => (await option_state(url, "free_space_max_range")).value === before.value);
+    await until("the server has the old one", async () => (await option_state(api, "free_space_max_range")).value === before.value);
     await until("the field shows it", async () => Number(await row.getByRole("textbox").inputValue()) === before.value);
   });
 
   await step("a value out of range is refused beside the field, and nothing changes", async () => {
     await page.getByRole("searchbox").fill("ball_max");
-    const before = await option_state(url, "ball_max");
+    const before = await option_state(api, "ball_max");
     const row = page.locator('[data-option="ball_max"]');
     await row.getByRole("textbox").fill("5000");
     await row.getByRole("textbox").press("Enter");
@@ -210,7 +187,7 @@ async function main(url, browser, screenshots) {
     await error.waitFor();
     assert.match(await error.innerText(), /ball_max|100/);
     assert.equal(await row.getByRole("textbox").inputValue(), "5000", "what was typed can be corrected");
-    assert.equal((await option_state(url, "ball_max")).value, before.value);
+    assert.equal((await option_state(api, "ball_max")).value, before.value);
     await picture("stages_refused");
     await row.getByRole("textbox").press("Escape");
     await until("the old value is back", async () => Number(await row.getByRole("textbox").inputValue()) === before.value && (await error.count()) === 0);
@@ -272,14 +249,13 @@ async function main(url, browser, screenshots) {
     for (const socket of sockets) await socket.close();
     await says(/connection lost, next try in/);
     await other.locator('[data-show="content"].old').waitFor();
-    if (screenshots !== "") await other.screenshot({ path: path.join(screenshots, `${String(++number).padStart(2, "0")}_lost.png`) });
+    await picture("lost", false, other);
     lost = false;
     await says(/^\s*live/);
     await other.close();
   });
 
-  await context.close();
-  assert.deepEqual(faults, []);
+  await end();
 }
 
 await run("browser.mjs", main);

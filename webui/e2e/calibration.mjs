@@ -11,37 +11,14 @@
 // COMMAND starts a server that prints its address (http://...); it is ended afterwards. Exit code 77: skipped, no browser.
 // The source must show the target over and over. The server must be able to save; its camera file is written.
 import assert from "node:assert/strict";
-import path from "node:path";
-import { patience_ms, run, until } from "./run.mjs";
+import { open_page, run, until } from "./run.mjs";
 
 async function main(url, browser, screenshots, { target, model, views: wanted, "by-hand": by_hand, patience: patience_s }) {
   const patience = 1000 * Number(patience_s);
-  const context = await browser.newContext({ viewport: { width: 1440, height: 1000 }, colorScheme: "light" });
-  context.setDefaultTimeout(patience_ms);
-  const page = await context.newPage();
-  const faults = [];
-  page.on("pageerror", (error) => faults.push(`error: ${error.message}`));
-  page.on("console", (message) => {
-    // Refusals are part of the test; the browser tells them as errors of the network.
-    if (message.type() === "error" && !/status of 4(00|09)/.test(message.text())) faults.push(`console: ${message.text()}`);
-  });
-  const api = async (method, name, data) => {
-    const response = await context.request.fetch(new URL(`/api/calibration${name}`, url).href, { method, ...(data === undefined ? {} : { data }) });
-    assert.ok(response.ok(), `${method} ${name}: ${response.status()} ${response.ok() ? "" : await response.text()}`);
-    return response.json();
-  };
+  // Refusals are part of the test.
+  const { context, page, picture, step, show, api: ask, end } = await open_page(browser, url, { screenshots, prefix: "calibration_", refusals: /status of 4(00|09)/ });
+  const api = (method, name, data) => ask(method, `/api/calibration${name}`, data);
   const state = () => api("GET", "");
-  let number = 0;
-  const picture = async (name, full = true) => {
-    if (screenshots === "") return;
-    await page.evaluate(() => scrollTo(0, 0));
-    await page.screenshot({ path: path.join(screenshots, `calibration_${String(++number).padStart(2, "0")}_${name}.png`), fullPage: full });
-  };
-  const step = async (name, work) => {
-    await work();
-    console.log(`ok: ${name}`);
-  };
-  const show = (name) => page.locator(`[data-show="${name}"]`);
   const canvas = show("calibration-picture");
   const shown = async (name) => canvas.getAttribute(`data-${name}`);
   const begin = show("begin");
@@ -277,8 +254,7 @@ async function main(url, browser, screenshots, { target, model, views: wanted, "
     await api("DELETE", "/views");
   });
 
-  await context.close();
-  assert.deepEqual(faults, []);
+  await end();
 }
 
 await run("calibration.mjs", main, {

@@ -5,39 +5,16 @@
 // COMMAND starts a server that prints its address (http://...); it is ended afterwards. Exit code 77: skipped, no browser.
 // The source must go on for some minutes. The server must be able to save; its files are written.
 import assert from "node:assert/strict";
-import path from "node:path";
-import { patience_ms, run, until } from "./run.mjs";
+import { open_page, run, until } from "./run.mjs";
 
 /// From the pointer event to the picture that shows what came of it, the median of so many. [ms]
 const latency_limit_ms = 100, latency_count = 20;
 
 async function main(url, browser, screenshots) {
-  const context = await browser.newContext({ viewport: { width: 1440, height: 1000 }, colorScheme: "light" });
-  context.setDefaultTimeout(patience_ms);
-  const page = await context.newPage();
-  const faults = [];
-  page.on("pageerror", (error) => faults.push(`error: ${error.message}`));
-  page.on("console", (message) => {
-    // A draft that another browser overtook is meant to be refused; the browser tells it as an error of the network.
-    if (message.type() === "error" && !/status of 409/.test(message.text())) faults.push(`console: ${message.text()}`);
-  });
+  // A draft that another browser overtook is meant to be refused.
+  const { context, page, picture, step, show, api: ask, end } = await open_page(browser, url, { screenshots, prefix: "colors_", refusals: /status of 409/ });
   page.on("dialog", (dialog) => void dialog.accept());
-  const api = async (method, name, data) => {
-    const response = await context.request.fetch(new URL(`/api/training${name}`, url).href, { method, ...(data === undefined ? {} : { data }) });
-    assert.ok(response.ok(), `${method} ${name}: ${response.status()}`);
-    return response.json();
-  };
-  let number = 0;
-  const picture = async (name, full = true) => {
-    if (screenshots === "") return;
-    await page.evaluate(() => scrollTo(0, 0));
-    await page.screenshot({ path: path.join(screenshots, `colors_${String(++number).padStart(2, "0")}_${name}.png`), fullPage: full });
-  };
-  const step = async (name, work) => {
-    await work();
-    console.log(`ok: ${name}`);
-  };
-  const show = (name) => page.locator(`[data-show="${name}"]`);
+  const api = (method, name, data) => ask(method, `/api/training${name}`, data);
   const canvas = show("color-picture");
   /// A point of the picture's canvas, in shares of it.
   const at = async (x, y) => {
@@ -361,8 +338,7 @@ async function main(url, browser, screenshots) {
     await count_is(own);
   });
 
-  await context.close();
-  assert.deepEqual(faults, []);
+  await end();
 }
 
 await run("colors.mjs", main);

@@ -1,4 +1,5 @@
 // What the tests in a browser share: arguments, the server, the browser, and waiting.
+import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { accessSync, constants, mkdirSync } from "node:fs";
 import path from "node:path";
@@ -92,4 +93,40 @@ export async function run(name, main, own = {}) {
     await browser?.close();
     await server.end();
   }
+}
+
+/// A page of its own to work on. `prefix` begins the names of its screenshots; `refusals` are the answers that the test provokes, and that the browser tells as errors.
+/// picture(name), step(name, work), show(name), api(method, path, data); end() closes it, and fails when the page had errors.
+export async function open_page(browser, url, { screenshots, prefix, refusals }) {
+  const context = await browser.newContext({ viewport: { width: 1440, height: 1000 }, colorScheme: "light" });
+  context.setDefaultTimeout(patience_ms);
+  const page = await context.newPage();
+  const faults = [];
+  page.on("pageerror", (error) => faults.push(`error: ${error.message}`));
+  page.on("console", (message) => {
+    if (message.type() === "error" && !refusals.test(message.text())) faults.push(`console: ${message.text()}`);
+  });
+  let number = 0;
+  return {
+    context, page, faults,
+    picture: async (name, full = true, of = page) => {
+      if (screenshots === "") return;
+      await of.evaluate(() => scrollTo(0, 0));   // the bar stays at the top of the screen, not of the picture
+      await of.screenshot({ path: path.join(screenshots, `${prefix}${String(++number).padStart(2, "0")}_${name}.png`), fullPage: full });
+    },
+    step: async (name, work) => {
+      await work();
+      console.log(`ok: ${name}`);
+    },
+    show: (name) => page.locator(`[data-show="${name}"]`),
+    api: async (method, name, data) => {
+      const response = await context.request.fetch(new URL(name, url).href, { method, ...(data === undefined ? {} : { data }) });
+      assert.ok(response.ok(), `${method} ${name}: ${response.status()} ${response.ok() ? "" : await response.text()}`);
+      return response.json();
+    },
+    end: async () => {
+      await context.close();
+      assert.deepEqual(faults, []);
+    },
+  };
 }

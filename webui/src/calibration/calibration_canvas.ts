@@ -1,3 +1,4 @@
+import { follow_size } from "../canvas/follow_size";
 import { FramePainter } from "../colors/frame_painter";
 import type { Calibration, View } from "../link/calibration_api";
 import type { Point } from "../scene";
@@ -21,13 +22,7 @@ export class CalibrationCanvas {
     };
     const { frames, model, pointed, shows_coverage, shows_outlines } = session;
     for (const source of [frames.newest, model.view, pointed, shows_coverage, shows_outlines]) this.ends.push(source.subscribe(request));
-    const resize = new ResizeObserver(() => {
-      canvas.width = Math.max(1, Math.round(canvas.clientWidth * this.density));
-      canvas.height = Math.max(1, Math.round(canvas.clientHeight * this.density));
-      this.draw();
-    });
-    resize.observe(canvas);
-    this.ends.push(() => resize.disconnect());
+    this.ends.push(follow_size(canvas, () => this.density, () => this.draw()));
     request();
   }
 

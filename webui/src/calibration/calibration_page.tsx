@@ -1,6 +1,6 @@
-import { useEffect } from "preact/hooks";
 import { useValue } from "../link/observable";
 import type { Session } from "../session";
+import { KeyHelp, useWork, Words } from "../work_page";
 import "../colors/colors.css";
 import "./calibration.css";
 import type { CalibrationSession } from "./calibration_session";
@@ -13,23 +13,11 @@ import { ViewsPane } from "./views_pane";
 /// Camera calibration: hold a target in front of the camera, look at what is covered, work the camera out, keep it.
 export function CalibrationPage({ session }: { session: Session }) {
   const { calibration } = session;
-  useEffect(() => {
-    calibration.open();
-    session.want_pictures(false);
-    const key = (event: KeyboardEvent): void => {
-      if (!event.defaultPrevented && press(calibration, event)) event.preventDefault();
-    };
-    addEventListener("keydown", key);
-    return () => {
-      removeEventListener("keydown", key);
-      session.want_pictures(true);
-      calibration.close();
-    };
-  }, [session]);
+  useWork(session, calibration, press);
   return (
     <div class="calibration">
       <h1 class="unseen">Calibration</h1>
-      <Words session={calibration} />
+      <CalibrationWords session={calibration} />
       <div class="work">
         <PicturePane session={calibration} />
         <ViewsPane session={calibration} />
@@ -38,31 +26,14 @@ export function CalibrationPage({ session }: { session: Session }) {
         <TargetPane session={calibration} />
         <LensPane session={calibration} />
         <ResultPane session={calibration} />
-        <section class="help" aria-label="Keys">
-          <details>
-            <summary>Keys</summary>
-            <dl>{key_help.map(([keys, what]) => <div key={keys}><dt><kbd>{keys}</kbd></dt><dd>{what}</dd></div>)}</dl>
-          </details>
-        </section>
+        <KeyHelp keys={key_help} />
       </div>
     </div>
   );
 }
 
-/// What must be read before anything else, and what is only read aloud.
-function Words({ session }: { session: CalibrationSession }) {
+function CalibrationWords({ session }: { session: CalibrationSession }) {
   const { trouble, refusal } = useValue(session.model.view);
   const said = useValue(session.said);
-  return (
-    <div class="words">
-      {trouble && <p class="notice" role="alert" data-show="trouble">{trouble}</p>}
-      {refusal && (
-        <p class="notice warning" role="alert" data-show="refusal">
-          <span>not done: {refusal}</span>
-          <button type="button" onClick={() => session.model.dismiss()}>understood</button>
-        </p>
-      )}
-      <span class="unseen" role="status">{said}</span>
-    </div>
-  );
+  return <Words trouble={trouble} notice={refusal && `not done: ${refusal}`} show="refusal" dismiss={() => session.model.dismiss()} said={said} />;
 }

@@ -1,6 +1,6 @@
-import { useEffect } from "preact/hooks";
 import { useValue } from "../link/observable";
 import type { Session } from "../session";
+import { KeyHelp, useWork, Words } from "../work_page";
 import { OptionRow } from "../stages/option_row";
 import { Brightness } from "./brightness";
 import { ClassTable } from "./class_table";
@@ -18,23 +18,11 @@ import { UvPane } from "./uv_pane";
 /// Color training: draw what belongs to a class, see at once what comes of it, save it and use it.
 export function ColorsPage({ session }: { session: Session }) {
   const { colors } = session;
-  useEffect(() => {
-    colors.open();
-    session.want_pictures(false);
-    const key = (event: KeyboardEvent): void => {
-      if (!event.defaultPrevented && press(colors, event)) event.preventDefault();
-    };
-    addEventListener("keydown", key);
-    return () => {
-      removeEventListener("keydown", key);
-      session.want_pictures(true);
-      colors.close();
-    };
-  }, [session]);
+  useWork(session, colors, press);
   return (
     <div class="colors">
       <h1 class="unseen">Colors</h1>
-      <Words colors={colors} />
+      <ColorsWords colors={colors} />
       <div class="work">
         <PicturePane colors={colors} />
         <FilmStrip colors={colors} />
@@ -45,33 +33,17 @@ export function ColorsPage({ session }: { session: Session }) {
         <ClassTable colors={colors} />
         <Chosen colors={colors} />
         <SavePane colors={colors} />
-        <section class="help" aria-label="Keys">
-          <details>
-            <summary>Keys</summary>
-            <dl>{key_help.map(([keys, what]) => <div key={keys}><dt><kbd>{keys}</kbd></dt><dd>{what}</dd></div>)}</dl>
-          </details>
-        </section>
+        <KeyHelp keys={key_help} />
       </div>
     </div>
   );
 }
 
-/// What must be read before anything else, and what is only read aloud.
-function Words({ colors }: { colors: ColorsSession }) {
+function ColorsWords({ colors }: { colors: ColorsSession }) {
   const { notice, trouble, training } = useValue(colors.training.view);
   const said = useValue(colors.said);
-  return (
-    <div class="words">
-      {trouble && <p class="notice" role="alert" data-show="trouble">{trouble}{training !== null && "; what you draw is kept here and sent when it answers"}</p>}
-      {notice && (
-        <p class="notice warning" role="alert" data-show="notice">
-          <span>{notice}</span>
-          <button type="button" onClick={() => colors.training.dismiss()}>understood</button>
-        </p>
-      )}
-      <span class="unseen" role="status">{said}</span>
-    </div>
-  );
+  const kept = trouble && training !== null ? "; what you draw is kept here and sent when it answers" : "";
+  return <Words trouble={trouble + kept} notice={notice} show="notice" dismiss={() => colors.training.dismiss()} said={said} />;
 }
 
 function Chosen({ colors }: { colors: ColorsSession }) {

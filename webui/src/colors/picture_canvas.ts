@@ -1,3 +1,4 @@
+import { follow_size } from "../canvas/follow_size";
 import { apply, inverse } from "../canvas/transform";
 import type { YuvFrame } from "../link/frame_bytes";
 import type { Point } from "../scene";
@@ -43,13 +44,7 @@ export class PictureCanvas {
                           colors.selected, colors.cursor, colors.tool, colors.radius]) {
       this.ends.push(source.subscribe(redraw));
     }
-    const resize = new ResizeObserver(() => {
-      canvas.width = Math.max(1, Math.round(canvas.clientWidth * this.density));
-      canvas.height = Math.max(1, Math.round(canvas.clientHeight * this.density));
-      this.draw();
-    });
-    resize.observe(canvas);
-    this.ends.push(() => resize.disconnect());
+    this.ends.push(follow_size(canvas, () => this.density, () => this.draw()));
     this.listen("pointerdown", (event) => this.down(event));
     this.listen("pointermove", (event) => this.move(event));
     this.listen("pointerup", (event) => this.up(event));

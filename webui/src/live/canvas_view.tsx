@@ -1,5 +1,6 @@
 import { useEffect, useRef } from "preact/hooks";
 import type { Observable } from "../link/observable";
+import { follow_size } from "../canvas/follow_size";
 import { type Palette, palette_of } from "../canvas/pen";
 import type { Size } from "../canvas/transform";
 
@@ -23,16 +24,7 @@ export function CanvasView({ label, sources, draw }: Props) {
     let palette = palette_of(element);
     const redraw = (): void => latest.current(context, element, palette, density());
     const density = (): number => Math.max(1, Math.min(devicePixelRatio, 3));
-    const resize = new ResizeObserver(() => {
-      const width = Math.max(1, Math.round(element.clientWidth * density()));
-      const height = Math.max(1, Math.round(element.clientHeight * density()));
-      if (width !== element.width || height !== element.height) {
-        element.width = width;
-        element.height = height;
-      }
-      redraw();
-    });
-    resize.observe(element);
+    const end_following = follow_size(element, density, redraw);
     const dark = matchMedia("(prefers-color-scheme: dark)");
     const recolor = (): void => {
       palette = palette_of(element);
@@ -41,7 +33,7 @@ export function CanvasView({ label, sources, draw }: Props) {
     dark.addEventListener("change", recolor);
     const ends = sources.map((source) => source.subscribe(redraw));
     return () => {
-      resize.disconnect();
+      end_following();
       dark.removeEventListener("change", recolor);
       for (const end of ends) end();
     };
