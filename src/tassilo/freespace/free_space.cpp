@@ -42,6 +42,7 @@ SectorMap::Ray follow(const MountedCamera& camera, FloorPoint origin, double ang
     if (ray.steps.empty() || ray.steps.back().column != c || ray.steps.back().row != r)
       ray.steps.push_back({c, r, static_cast<float>(range)});
   }
+  ray.is_in_view_to_the_end = entered;
   return ray;
 }
 
@@ -99,6 +100,8 @@ class Walker {
         }
       }
     }
+    // The last pixel's floor goes on to the maximal range.
+    if (ray.is_in_view_to_the_end && free_until == ray.steps.back().range) free_until = map_.options().max_range;
     return {odd > 0 && !behind_ball ? SectorState::blocked : SectorState::free, free_until};
   }
 

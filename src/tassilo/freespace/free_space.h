@@ -40,8 +40,9 @@ class SectorMap {
     float range;        ///< Of its last step. [m]
   };
   struct Ray {
-    RecycledVector<Step> steps;         ///< Empty where no floor of this direction is in view.
-    RecycledVector<Stretch> stretches;  ///< All steps, in order.
+    RecycledVector<Step> steps;          ///< Empty where no floor of this direction is in view.
+    RecycledVector<Stretch> stretches;   ///< All steps, in order.
+    bool is_in_view_to_the_end = false;  ///< What ends it is the maximal range, not the edge of the view.
   };
 
   const MountedCamera& camera() const { return camera_; }

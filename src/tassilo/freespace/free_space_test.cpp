@@ -68,6 +68,8 @@ std::pair<SectorState, double> plain_walk(const SectorMap& map, const SectorMap:
       return {behind_ball ? SectorState::free : SectorState::blocked, free_until};
     }
   }
+  if (!ray.steps.empty() && ray.is_in_view_to_the_end && free_until == ray.steps.back().range)
+    free_until = map.options().max_range;
   return {odd > 0 && !behind_ball ? SectorState::blocked : SectorState::free, free_until};
 }
 
@@ -218,7 +220,7 @@ TEST(FindFreeSpace, FloorUpToTheMaximalRangeIsFree) {
   const FreeSpace space = find_free_space(map, known.surface, {});
   const auto ahead = static_cast<std::size_t>(std::lround(-space.angle_min / space.angle_increment));
   EXPECT_EQ(space.states[ahead], SectorState::free);
-  EXPECT_NEAR(space.ranges[ahead], 3, 0.1);
+  EXPECT_EQ(space.ranges[ahead], 3);
 }
 
 TEST(FreeSpaceOptions, RefusesWhatIsOutOfRange) {
