@@ -33,7 +33,7 @@ struct MessageContext {
   Team team = Team::unknown;
   double ball_radius = 0.105;   ///< Height of a ball's centre above the floor. [m], > 0
   double free_space_range = 8;  ///< The furthest that was asked for. [m], > 0
-  MotionOptions motion;         ///< How sure odometry is.
+  MotionOptions motion = {};    ///< How sure odometry is.
 };
 
 /// The scene's time on the UNIX clock.
