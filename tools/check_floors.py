@@ -41,7 +41,7 @@ THIRD_PARTY = {
     "files": ["yaml-cpp/", "png.h", "jpeglib.h", "nlohmann/", *POSIX],
     "evaluate": ["nlohmann/"],
     "source": [*FFMPEG, *POSIX, "linux/"],
-    "record": [*FFMPEG, *POSIX],
+    "record": [*FFMPEG, *POSIX, "zlib.h"],
     "team": ["dds/", *POSIX],
     "sim": ["embree3/"],
     "web": ["boost/", *POSIX],

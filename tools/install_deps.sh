@@ -33,7 +33,7 @@ packages=(
   libeigen3-dev
   libavformat-dev libavcodec-dev libswscale-dev libavutil-dev
   libboost-dev libqrencode-dev
-  libyaml-cpp-dev libpng-dev libjpeg-dev nlohmann-json3-dev libcli11-dev libfmt-dev libcairo2-dev libceres-dev libapriltag-dev
+  libyaml-cpp-dev libpng-dev libjpeg-dev zlib1g-dev nlohmann-json3-dev libcli11-dev libfmt-dev libcairo2-dev libceres-dev libapriltag-dev
   libgtest-dev libgmock-dev libbenchmark-dev
   clang-format python3 python3-numpy python3-jsonschema ffmpeg
   pybind11-dev python3-dev python3-pytest
