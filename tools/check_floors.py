@@ -42,7 +42,7 @@ THIRD_PARTY = {
     "evaluate": ["nlohmann/"],
     "source": [*FFMPEG, *POSIX, "linux/"],
     "record": [*FFMPEG, *POSIX, "zlib.h"],
-    "team": ["dds/", *POSIX],
+    "team": ["dds/", "linux/filter.h", *POSIX],
     "sim": ["embree3/"],
     "web": ["boost/", *POSIX],
     "app": ["CLI/", "fmt/", "spdlog/", "nlohmann/", "qrencode.h", *POSIX],

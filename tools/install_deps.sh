@@ -11,6 +11,7 @@ usage: tools/install_deps.sh [--references] [--benchmarks]
   a bare machine) and the web UI's packages through npm where webui/ exists. Does nothing when nothing is missing.
   --references  also clang (for fuzzing), the OpenCV modules that some tests compare with, and Leptonica, with which a
                 benchmark does (about 80 MB more); without them those tests are skipped and listed.
+                And Fast DDS, with which the team bus is tested as with a stranger (about 5 MB)
                 And what builds for aarch64 and runs it here: cross compiler, qemu-user, GoogleTest's source
                 (about 70 MB). And a browser without windows, with which the web UI is tested (about 65 MB)
   --benchmarks  also what bench/report compares with: OpenCV with the run lengths of its extra modules
@@ -32,7 +33,7 @@ packages=(
   g++ cmake ninja-build ccache pkg-config make git
   libeigen3-dev
   libavformat-dev libavcodec-dev libswscale-dev libavutil-dev
-  libboost-dev libqrencode-dev
+  libboost-dev libqrencode-dev cyclonedds-dev
   libyaml-cpp-dev libpng-dev libjpeg-dev zlib1g-dev nlohmann-json3-dev libcli11-dev libfmt-dev libcairo2-dev libceres-dev libapriltag-dev
   libgtest-dev libgmock-dev libbenchmark-dev
   clang-format python3 python3-numpy python3-jsonschema ffmpeg
@@ -40,6 +41,7 @@ packages=(
 )
 # imgproc and calib3d alone: the whole libopencv-dev is twice as large, and libopencv-contrib-dev brings nearly all of it.
 if [ "$references" = 1 ]; then packages+=(clang libopencv-imgproc-dev libopencv-calib3d-dev libleptonica-dev); fi
+if [ "$references" = 1 ]; then packages+=(libfastrtps-dev libfastcdr-dev); fi
 if [ "$references" = 1 ]; then packages+=(g++-aarch64-linux-gnu qemu-user googletest); fi
 if [ "$benchmarks" = 1 ]; then packages+=(libopencv-imgproc-dev libopencv-contrib-dev libleptonica-dev); fi
 # Whoever has them from elsewhere keeps them: Debian's packages conflict with those of nodejs.org.
