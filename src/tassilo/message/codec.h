@@ -41,7 +41,7 @@ std::string ros_type_name() {
 }
 /// "geometry_msgs::msg::dds_::Point_", as it is on the wire.
 template <Message M>
-std::string dds_type_name() {
+std::string wire_type_name() {
   const std::size_t slash = M::kType.find('/');
   return std::string(M::kType.substr(0, slash)).append("::msg::dds_::").append(M::kType.substr(slash + 1)).append("_");
 }

@@ -66,7 +66,7 @@ TEST(Definition, OfAStandardTypeIsAsRosHasIt) {
 
 TEST(TypeNames, AreThoseOfRos) {
   EXPECT_EQ(ros_type_name<ros::LaserScan>(), "sensor_msgs/msg/LaserScan");
-  EXPECT_EQ(dds_type_name<ros::LaserScan>(), "sensor_msgs::msg::dds_::LaserScan_");
+  EXPECT_EQ(wire_type_name<ros::LaserScan>(), "sensor_msgs::msg::dds_::LaserScan_");
 }
 
 }  // namespace

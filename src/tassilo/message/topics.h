@@ -16,13 +16,13 @@ namespace tassilo {
 struct Topic {
   std::string_view name;
   std::string (*ros_type)();    ///< "sensor_msgs/msg/LaserScan"
-  std::string (*dds_type)();    ///< "sensor_msgs::msg::dds_::LaserScan_"
+  std::string (*wire_type)();   ///< "sensor_msgs::msg::dds_::LaserScan_"
   std::string (*definition)();  ///< Of the type and all it uses.
 };
 
 template <Message M>
 constexpr Topic topic_of(std::string_view name) {
-  return {name, ros_type_name<M>, dds_type_name<M>, definition<M>};
+  return {name, ros_type_name<M>, wire_type_name<M>, definition<M>};
 }
 
 inline constexpr Topic kPoseTopic = topic_of<ros::PoseWithCovarianceStamped>("pose");
