@@ -20,6 +20,7 @@
 #include "tassilo/app/recorder.h"
 #include "tassilo/app/run_sinks.h"
 #include "tassilo/app/run_summary.h"
+#include "tassilo/app/team_sender.h"
 #include "tassilo/app/written_files.h"
 #include "tassilo/base/error.h"
 #include "tassilo/localize/mount_drift.h"
@@ -49,8 +50,9 @@ void check_paths(const RunArguments& arguments, std::vector<NamedFile> read) {
   const std::string extension = source.extension().string();
   if (extension == ".png" || extension == ".jpg" || extension == ".jpeg")
     read.push_back({"folder of --source", source.has_parent_path() ? source.parent_path().string() : "."});
-  check_written_files(read, std::array<NamedFile, 3>{{{"--output", arguments.output},
+  check_written_files(read, std::array<NamedFile, 4>{{{"--output", arguments.output},
                                                       {"--overlay", arguments.overlay},
+                                                      {"--record", arguments.log},
                                                       {"--label-maps", arguments.label_maps}}});
 }
 
@@ -128,6 +130,7 @@ class Run {
     tell(fmt::format("{}: {}\n", name(), info_.description));
     if (is_live()) std::fflush(report_);  // somebody watches
     RunSinks sinks(arguments_);
+    begin_telling();
     if (recorder_ != nullptr && !arguments_.record.empty()) recorder_->start();
     progress_.emplace(!arguments_.quiet && live_ == nullptr, info_.frame_count);
     const auto load_checked = [this](const VisionChanges& changes) { return checked(load(changes)); };
@@ -153,12 +156,18 @@ class Run {
     }
     const double seconds = ms_between(begin, Clock::now()) / 1000;
     if (recorder_ != nullptr) recorder_->finish();
+    try {
+      if (sender_) sender_->finish();
+    } catch (const Error& error) {
+      if (!damage) damage = error;
+    }
     progress_->finish();
     tell_of_recording();
     if (odometry_.get() != nullptr) summary_.set_odometry(odometry_.get()->counts());
     tell(summary_.text(seconds, camera_summary(source_->camera_counts()) + odometry_.summary()));
     if (interrupted) tell("\nended by a signal; all lines are complete\n");
     tell(sinks.names());
+    if (sender_) tell(sender_->summary());
     if (recorder_ != nullptr && !arguments_.record.empty()) tell(recording_summary(recorder_->state()));
     if (damage) throw *damage;
     // What was asked for at the start and is not whole is a failure; a button's is told where it was pressed.
@@ -249,8 +258,27 @@ class Run {
     workspace_.history.tracks.add(start->t, start->tracks);
   }
 
+  void begin_telling() {
+    if (!arguments_.says_on_bus && arguments_.log.empty()) return;
+    const RobotFile& robot = configuration_->setup.robot;
+    TeamSenderOptions options;
+    options.robot = arguments_.robot_id.value_or(robot.id);
+    if (arguments_.says_on_bus) options.bus = arguments_.bus.options(robot.bus);
+    if (const auto bytes = robot.bus.bytes_per_second) options.budget.bytes_per_second = *bytes;
+    if (const auto rate = robot.bus.picture_rate) options.budget.picture_rate = *rate;
+    options.budget.rates = robot.bus.rates;
+    options.reliable = robot.bus.reliable;
+    options.log = arguments_.log;
+    options.waits = loses_nothing(arguments_.source) && !arguments_.says_on_bus;
+    sender_.emplace(options);
+  }
+
+  /// Somebody looks or listens: a file plays as it was recorded.
+  bool plays_in_real_time() const { return (live_ != nullptr || arguments_.says_on_bus) && !is_live(); }
+
   void see_all(RunSinks& sinks) {
     std::optional<double> last_t;
+    bool is_first = true;
     // Played again: the last frame is seen as long as the one before it, also by those who look at single images.
     auto due = Clock::now() + last_step_;
     while (!interrupted) {
@@ -259,7 +287,8 @@ class Run {
       if (!frame) return;
       if (read_++ % arguments_.every != 0) continue;
       const double decode_ms = ms_between(before, Clock::now());
-      if (live_ != nullptr && !is_live()) {
+      if (sender_ && std::exchange(is_first, false)) sender_->begin(frame->t);
+      if (plays_in_real_time()) {
         // In real time, but a gap in the recording does not stop it for long.
         constexpr double longest_gap = 1;  // [s]
         const double step = last_t ? std::clamp(frame->t - *last_t, 0., longest_gap) : 0;
@@ -297,8 +326,10 @@ class Run {
     const Odometry* const odometry = odometry_.get();
     if (recorder_ != nullptr) recorder_->before(frame, configuration_, workspace_.history, odometry_);
     Scene scene = seen_by(vision, frame, odometry);
+    std::optional<double> latency_s;
     if (const std::optional<double> now = source_->now()) {
-      const double latency_ms = 1000 * (*now - frame.t);
+      latency_s = *now - frame.t;
+      const double latency_ms = 1000 * *latency_s;
       summary_.add_latency(latency_ms);
       if (live_ != nullptr) live_->add_latency(latency_ms);
     }
@@ -312,6 +343,7 @@ class Run {
     sinks.write(frame, scene, workspace_, vision.optics());
     if (live_ != nullptr) live_->show(frame, scene, workspace_, configuration_);
     if (recorder_ != nullptr) recorder_->after(frame, scene, odometry_);
+    if (sender_) sender_->say(frame, scene, workspace_, configuration_, odometry, latency_s);
     tell_of_recording();
     watch_mount(scene);
     summary_.add(scene);
@@ -392,6 +424,7 @@ class Run {
   std::shared_ptr<const Configuration> drift_of_;  ///< Whose field `drift_target_` is.
   std::optional<FieldTarget> drift_target_;
   std::optional<Progress> progress_;
+  std::optional<TeamSender> sender_;
   bool has_chosen_ = false;  ///< Taken over from a browser since the watch last had news.
   std::int64_t read_ = 0, done_ = 0;
   Clock::duration last_step_{};              ///< From frame to frame of a file that is played in real time.

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tassilo/app/bus_arguments.h"
 #include "tassilo/app/source_arguments.h"
 #include "tassilo/files/robot_file.h"
 
@@ -18,6 +19,10 @@ struct RunArguments {
   SourceArguments source;
   std::string robot, odometry, output, overlay, overlay_step, label_maps, colors, start_pose;
   std::string record;  ///< Folder for recordings; with `run`, one begins at once.
+  std::string log;     ///< MCAP file of what is told.
+  bool says_on_bus = false;
+  BusArguments bus;
+  std::optional<int> robot_id;  ///< Instead of the robot file's.
   std::vector<std::string> plugins;
   std::optional<StartPose> start;  ///< What `start_pose` says.
   int every = 1;
