@@ -23,8 +23,8 @@ def free_domain():
 class Program:
     """A peer, which answers each line with one."""
 
-    def __init__(self, *command):
-        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    def __init__(self, *command, **options):
+        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, **options)
         self.first = self.process.stdout.readline().strip()
 
     def ask(self, line):

@@ -7,7 +7,7 @@
 //   pattern TOPIC SIZE SEED                           -> sent | given up: bytes of pattern() in bus_pattern.h
 //   take TOPIC N [MS]                                 -> the hexadecimal bytes of N messages, blanks between, or "late"
 //   taken TOPIC                                       -> number of all messages that came since the last line
-//   lost TOPIC                                        -> number
+//   lost TOPIC | refused TOPIC                        -> number
 //   stream TOPIC SIZE MS                              -> ok; from now on writes a pattern each MS, seeds counting from
 //   0 publications                                      -> TOPIC TYPE ID, blanks between rss -> memory in use [kB]
 // usage: bus_peer DOMAIN
@@ -112,6 +112,12 @@ class Peer {
     }
     if (verb == "taken") return std::to_string(readers_.at(topic).take().size());
     if (verb == "lost") return std::to_string(readers_.at(topic).lost());
+    if (verb == "refused") return std::to_string(readers_.at(topic).refused());
+    if (verb == "complaints") {
+      std::string text;
+      for (const std::string& complaint : Bus::complaints()) text += complaint + "; ";
+      return text;
+    }
     if (verb == "stream") {
       std::size_t size = 0;
       int ms = 0;
