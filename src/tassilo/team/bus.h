@@ -72,7 +72,8 @@ struct BusSample {
   BusId writer;                     ///< All zeros where the writer is already forgotten.
 };
 
-/// A writer or a reader somewhere on the domain, as its participant tells.
+/// A writer or a reader somewhere on the domain, as its participant tells. Names are 1..255 visible ASCII characters;
+/// endpoints with others are not told of.
 struct BusEndpoint {
   BusId id;
   BusId participant;
@@ -170,7 +171,7 @@ class Bus {
   void wake();
 
   BusId id() const;
-  /// What the middleware had to complain of, in this process, at most the last 20; for a log.
+  /// What the middleware had to complain of, in this process, at most the last 20, in ASCII; for a log.
   static std::vector<std::string> complaints();
 
  private:
