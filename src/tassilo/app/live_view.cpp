@@ -6,6 +6,7 @@
 
 #include "tassilo/app/annotated_picture.h"
 #include "tassilo/app/calibration_requests.h"
+#include "tassilo/app/field_json.h"
 #include "tassilo/app/frame_bytes.h"
 #include "tassilo/app/recording_api.h"
 #include "tassilo/app/training_requests.h"
@@ -57,23 +58,6 @@ std::string stages_json(const Configuration& configuration, const VisionChanges&
                       {"options", options_json(stage.options)}});
   }
   return stages.dump();
-}
-
-/// With the keys of a field file, as far as a view of the field wants them.
-json field_json(const FieldModel& field) {
-  json areas = json::array(), goals = json::array();
-  for (const FieldModel::Area& area : field.areas) areas.push_back({{"depth", area.depth}, {"width", area.width}});
-  for (const FieldModel::Goal& goal : field.goals)
-    goals.push_back({{"side", goal.side == GoalSide::plus_x ? "+x" : "-x"},
-                     {"color", std::string(to_string(goal.color))},
-                     {"width", goal.width},
-                     {"depth", goal.depth}});
-  return {{"length", field.length},
-          {"width", field.width},
-          {"circle_radius", field.circle_radius},
-          {"halfway_line", field.halfway_line},
-          {"areas", std::move(areas)},
-          {"goals", std::move(goals)}};
 }
 
 /// Without what says the same as the robot file, or as the default where that says nothing.

@@ -1,13 +1,11 @@
 #include "tassilo/app/run.h"
 
 #include <fmt/core.h>
-#include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <memory>
@@ -20,6 +18,7 @@
 #include "tassilo/app/recorder.h"
 #include "tassilo/app/run_sinks.h"
 #include "tassilo/app/run_summary.h"
+#include "tassilo/app/signals.h"
 #include "tassilo/app/team_sender.h"
 #include "tassilo/app/written_files.h"
 #include "tassilo/base/error.h"
@@ -27,19 +26,6 @@
 
 namespace tassilo {
 namespace {
-
-std::atomic<bool> interrupted = false;
-
-void on_signal(int) { interrupted = true; }
-
-/// Ctrl-C and a friendly kill end the run after the frame at work; a second one ends the program at once.
-void end_cleanly_on_signals() {
-  struct sigaction action {};
-  action.sa_handler = on_signal;
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-}
 
 /// Throws Error when a file that is read would be overwritten.
 void check_paths(const RunArguments& arguments, std::vector<NamedFile> read) {
@@ -64,7 +50,7 @@ FrameSource open_source_of(const SourceOptions& options) {
     const std::string extension = std::filesystem::path(options.location).extension().string();
     const bool may_be_raw =
         options.location == "-" || extension == ".yuv" || extension == ".raw" || extension == ".nv12";
-    if (options.raw || !may_be_raw || interrupted) throw;
+    if (options.raw || !may_be_raw || is_interrupted()) throw;
     throw Error(error.what(), "raw frames need --format, --size, --range and --fps");
   }
 }
@@ -123,7 +109,7 @@ class Run {
     try {
       open();
     } catch (const Error&) {
-      if (!interrupted) throw;
+      if (!is_interrupted()) throw;
       tell("ended by a signal before the first frame\n");
       return;
     }
@@ -165,7 +151,7 @@ class Run {
     tell_of_recording();
     if (odometry_.get() != nullptr) summary_.set_odometry(odometry_.get()->counts());
     tell(summary_.text(seconds, camera_summary(source_->camera_counts()) + odometry_.summary()));
-    if (interrupted) tell("\nended by a signal; all lines are complete\n");
+    if (is_interrupted()) tell("\nended by a signal; all lines are complete\n");
     tell(sinks.names());
     if (sender_) tell(sender_->summary());
     if (recorder_ != nullptr && !arguments_.record.empty()) tell(recording_summary(recorder_->state()));
@@ -182,8 +168,8 @@ class Run {
   bool plays_again() const {
     std::error_code ignored;
     const std::filesystem::path path = arguments_.source.source;
-    return live_ != nullptr && done_ > 0 && !interrupted && arguments_.output.empty() && arguments_.overlay.empty() &&
-           arguments_.label_maps.empty() &&
+    return live_ != nullptr && done_ > 0 && !is_interrupted() && arguments_.output.empty() &&
+           arguments_.overlay.empty() && arguments_.label_maps.empty() &&
            (std::filesystem::is_regular_file(path, ignored) || std::filesystem::is_directory(path, ignored));
   }
   bool is_live() const { return arguments_.source.camera.has_value(); }
@@ -231,7 +217,7 @@ class Run {
     options.images_range = configuration_->setup.vision.colors.range;
     options.fps = arguments_.source.fps;
     options.threads = arguments_.threads;
-    options.interrupted = [] { return interrupted.load(); };
+    options.interrupted = is_interrupted;
     if (is_live()) options.camera = *arguments_.source.camera;
     // Frames that fit the camera file need no --size.
     if (const auto& camera = configuration_->setup.vision.camera; camera && arguments_.source.size.empty()) {
@@ -281,7 +267,7 @@ class Run {
     bool is_first = true;
     // Played again: the last frame is seen as long as the one before it, also by those who look at single images.
     auto due = Clock::now() + last_step_;
-    while (!interrupted) {
+    while (!is_interrupted()) {
       const auto before = Clock::now();
       const std::optional<Frame> frame = source_->next();
       if (!frame) return;
@@ -314,7 +300,7 @@ class Run {
 
   static void wait_until(Clock::time_point then) {
     constexpr auto patience = std::chrono::milliseconds(50);  // until a signal is noticed
-    while (!interrupted && Clock::now() < then)
+    while (!is_interrupted() && Clock::now() < then)
       std::this_thread::sleep_for(std::min<Clock::duration>(patience, then - Clock::now()));
   }
 
@@ -322,7 +308,7 @@ class Run {
     RecycledString changes = taken_over(frame.index);
     const Vision& vision = configuration_->vision;
     vision.check_frames(name_of(frame, name()), frame.view.width(), frame.view.height(), frame.range);
-    odometry_.update(frame, [] { return interrupted.load(); });
+    odometry_.update(frame, is_interrupted);
     const Odometry* const odometry = odometry_.get();
     if (recorder_ != nullptr) recorder_->before(frame, configuration_, workspace_.history, odometry_);
     Scene scene = seen_by(vision, frame, odometry);
