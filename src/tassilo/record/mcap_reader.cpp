@@ -213,7 +213,7 @@ class McapReader::Log {
     if (begin == mcap::kMagic) return;
     const bool is_mcap = std::equal(begin.begin(), begin.begin() + 5, mcap::kMagic.begin());
     throw Error(source_->name(), is_mcap ? "is of another version of MCAP, must be of version 0"
-                                         : "is no MCAP file, must begin with 89 'MCAP0'");
+                                         : "is no MCAP file, must begin with the bytes 89 4d 43 41 50");
   }
 
   // ---- with an index
@@ -262,9 +262,11 @@ class McapReader::Log {
     // A chunk that is listed twice would be read twice.
     for (std::size_t i = 1; i < blocks_.size(); ++i)
       whole = whole && blocks_[i].at - blocks_[i - 1].at >= blocks_[i - 1].size;
-    if (whole && statistics) whole = is_time(statistics->end) && statistics->begin <= statistics->end;
     if (!whole) index.damage = "has a damaged index";
     if (!whole || !statistics || statistics->chunk_count != blocks_.size()) return;
+    // Some write such times where there are no messages.
+    const auto has_times = [](const auto& extent) { return extent.begin <= extent.end && is_time(extent.end); };
+    if (!has_times(*statistics) || !std::ranges::all_of(blocks_, has_times)) return;
     if (blocks_.empty() && statistics->message_count > 0) return;  // they are outside of chunks
     message_count_ = statistics->message_count;
     begin_ = statistics->begin;
@@ -274,8 +276,8 @@ class McapReader::Log {
 
   bool add_chunk(mcap::View content) {
     const auto index = mcap::parse_chunk_index(content);
-    if (!index || !is_within_file(index->chunk_start, index->chunk_length) || !is_time(index->end) ||
-        index->begin > index->end || !is_readable(index->chunk_start, index->compression))
+    if (!index || !is_within_file(index->chunk_start, index->chunk_length) ||
+        !is_readable(index->chunk_start, index->compression))
       return false;
     check_size(index->chunk_start, index->chunk_length);
     blocks_.push_back({.at = index->chunk_start,
@@ -321,7 +323,7 @@ class McapReader::Log {
     const std::uint64_t size = source_->size();
     Block run;
     std::uint64_t at = mcap::kMagic.size();
-    for (; damage_.empty(); at += kRecordHead) {
+    while (damage_.empty()) {
       if (at == size) {
         damage_ = "ends" + at_byte(at) + ", after a whole record: it was not finished";
         break;
@@ -338,7 +340,7 @@ class McapReader::Log {
         break;
       } else {
         scan_record(head, at, run);
-        at += head.length;
+        at += kRecordHead + head.length;
       }
     }
     end_run(run);
