@@ -264,6 +264,7 @@ class McapReader::Log {
       whole = whole && blocks_[i].at - blocks_[i - 1].at >= blocks_[i - 1].size;
     if (!whole) index.damage = "has a damaged index";
     if (!whole || !statistics || statistics->chunk_count != blocks_.size()) return;
+    if (statistics->channel_count > channels_.size()) return;  // they are described in the data only
     // Some write such times where there are no messages.
     const auto has_times = [](const auto& extent) { return extent.begin <= extent.end && is_time(extent.end); };
     if (!has_times(*statistics) || !std::ranges::all_of(blocks_, has_times)) return;
@@ -398,7 +399,7 @@ class McapReader::Log {
   void scan_chunk(const mcap::RecordHead& head, std::uint64_t at) {
     Block block{.at = at, .size = kRecordHead + head.length, .is_chunk = true};
     check_size(at, block.size);
-    if (!parse(block)) {
+    if (!parse(block, true)) {
       ++damaged_chunks_;
       return;
     }
@@ -493,7 +494,8 @@ class McapReader::Log {
   }
 
   /// Reads a block into memory and finds its messages, entries_. False when it is damaged; nothing of it is used then.
-  bool parse(const Block& block) {
+  /// describes: schemas and channels in it are news; once the file is open, what is read does not depend on what was.
+  bool parse(const Block& block, bool describes) {
     held_at_ = block.at;
     held_.resize(static_cast<std::size_t>(block.size));
     source_->read(block.at, held_);
@@ -510,7 +512,7 @@ class McapReader::Log {
     }
     const std::uint64_t at = block.at + static_cast<std::uint64_t>(records.data() - held_.data());
     return mcap::for_each_record(records, [&](mcap::Opcode opcode, mcap::View content, std::size_t place) {
-      if (opcode != mcap::Opcode::message) return describe(opcode, content);
+      if (opcode != mcap::Opcode::message) return !describes || describe(opcode, content);
       const auto message = mcap::parse_message(content);
       if (!message || !is_time(message->log_time) || !is_time(message->publish_time)) return false;
       entries_.push_back({message->log_time, at + place + kRecordHead, static_cast<std::uint32_t>(content.size())});
@@ -521,7 +523,7 @@ class McapReader::Log {
   void load(Block& block) {
     if (block.is_damaged || block.end < from_) return;
     const auto is_outside = [&](const Entry& entry) { return entry.time < block.begin || entry.time > block.end; };
-    if (!parse(block) || std::ranges::any_of(entries_, is_outside)) {
+    if (!parse(block, false) || std::ranges::any_of(entries_, is_outside)) {
       block.is_damaged = true;
       ++damaged_chunks_;
       return;

@@ -370,7 +370,9 @@ TEST(Mcap, ReadsWhatOthersWrite) {
   for (const std::uint16_t channel : {5, 6, 5}) append(chunk, mcap::Message{channel, 0, 7, 8, mcap::bytes_of("data")});
   append_unknown(chunk, 2);
   mcap::put_chunk_head(chunk, {});
+  const std::size_t chunk_at = chunked.size();
   chunked.insert(chunked.end(), chunk.begin(), chunk.end());
+  const Bytes data = chunked;
   append(chunked, mcap::Footer{});
   chunked.insert(chunked.end(), mcap::kMagic.begin(), mcap::kMagic.end());
   McapReader other(chunked, "b.mcap");
@@ -379,13 +381,11 @@ TEST(Mcap, ReadsWhatOthersWrite) {
   EXPECT_EQ(other.messages_without_channel(), 1u);
 
   // An index with times that are none is no reason to find less, nor one that lists a chunk twice.
-  Bytes indexed(mcap::kMagic.begin(), mcap::kMagic.end());
-  mcap::ChunkIndex index{.begin = ~std::uint64_t{0}, .end = 0, .chunk_start = 8, .chunk_length = chunk.size()};
-  indexed.insert(indexed.end(), chunk.begin(), chunk.end());
-  append(indexed, mcap::DataEnd{});
+  const mcap::ChunkIndex index{.begin = ~std::uint64_t{0}, .chunk_start = chunk_at, .chunk_length = chunk.size()};
   for (const std::uint32_t listed : {1, 2}) {
-    Bytes file_with = indexed;
-    const mcap::Footer footer{.summary_start = indexed.size()};
+    Bytes file_with = data;
+    append(file_with, mcap::DataEnd{});
+    const mcap::Footer footer{.summary_start = file_with.size()};
     for (std::uint32_t i = 0; i < listed; ++i) append(file_with, index);
     append(file_with, mcap::Statistics{.message_count = 3, .chunk_count = listed});
     append(file_with, footer);
