@@ -100,6 +100,7 @@ mcap::Bytes made_of(Bytes from) {
     for (const mcap::ChunkIndex& chunk : chunks) append(out, chunk);
     statistics.chunk_count = static_cast<std::uint32_t>(chunks.size());
     statistics.message_count = number(from);
+    statistics.channel_count = static_cast<std::uint32_t>(from.below(3));
     append(out, statistics);
   }
   append(out, footer);
@@ -129,10 +130,9 @@ void read(mcap::View file, std::int64_t from) {
     McapReader reader(file, "a.mcap");
     expects(reader.is_complete() == reader.damage().empty(), "what is damaged is said");
     reader.metadata();
-    // A channel may be described after its first messages; all are known now.
-    rest_of(reader, file.size());
-    reader.seek(0);
+    const auto channels = reader.channels();
     const std::vector<Place> all = rest_of(reader, file.size());
+    expects(reader.channels() == channels, "channels are known from the beginning");
     const std::uint64_t damaged = reader.damaged_chunks();
     reader.seek(0);
     expects(rest_of(reader, file.size()) == all, "what is read again is the same");

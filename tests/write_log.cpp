@@ -1,5 +1,5 @@
-// write_log FILE [COUNT]: writes a log of COUNT (10) messages on three channels, as tests/read_mcap_test.py knows it.
-// write_log FILE COUNT killed: the same, but the process is killed before it has finished.
+// write_log FILE [COUNT]: writes a log of COUNT (10) messages on three channels, as tests/log_exchange_test.py knows
+// it. write_log FILE COUNT killed: the same, but the process is killed before it has finished.
 
 #include <signal.h>
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Logs as others read them: what tests/write_log.cpp writes comes out of @mcap/core and Foxglove's decoders, by webui/e2e/read_mcap.mjs.
+"""Logs go between us and others: what tests/write_log.cpp writes comes out of @mcap/core and Foxglove's decoders, by webui/e2e/read_mcap.mjs, and
+what @mcap/core writes, by webui/e2e/write_mcap.mjs, comes out of tests/read_log.cpp.
 
-usage: tests/read_mcap_test.py WRITE_LOG [unittest arguments]     WRITE_LOG: the program built from tests/write_log.cpp
+usage: tests/log_exchange_test.py WRITE_LOG READ_LOG [unittest arguments]     the programs built from those sources
 """
 import json
 import pathlib
@@ -37,8 +38,8 @@ def message(i):
     return {"topic": topic, "schema": schema, "log_time": str(time), "publish_time": str(time - 1000), "sequence": i // 3, "message": content(i)}
 
 
-class ReadMcap(unittest.TestCase):
-    write_log = None  # set below
+class LogExchange(unittest.TestCase):
+    write_log = read_log = None  # set below
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="tassilo_")
@@ -90,11 +91,35 @@ class ReadMcap(unittest.TestCase):
                 _, said = self.read(code=1)
                 self.assertIn(says, said)
 
+    def written_by_others(self, kind, count):
+        subprocess.run(["node", ROOT / "webui/e2e/write_mcap.mjs", kind, str(count), self.file], check=True, timeout=TIMEOUT_S)
+        return subprocess.run([self.read_log, self.file], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=TIMEOUT_S)
+
+    def test_we_read_what_others_write(self):
+        def line(i):
+            time = BEGIN + 1000 * i - i % 7 * 20000
+            channel = "/odd a/msg/Odd json" if i % 2 else "/even a/msg/Even cdr"
+            return time, f"{channel} {time} {time - 1} {i // 2} {(bytes([i % 256]) * (i % 50)).hex() or '-'}"
+
+        for kind in ("chunks", "no_index", "no_chunks", "small"):
+            for count in (0, 300):
+                with self.subTest(kind=kind, count=count):
+                    done = self.written_by_others(kind, count)
+                    self.assertEqual(done.returncode, 0, done.stderr)
+                    messages = [text for _, text in sorted((line(i) for i in range(count)), key=lambda one: one[0])]
+                    self.assertEqual(done.stdout.splitlines(), [*messages, *(["metadata robot id=3"] if count > 20 else []), "complete"])
+
+    def test_what_others_compressed_is_refused_with_the_remedy(self):
+        done = self.written_by_others("lz4", 30)
+        self.assertEqual(done.returncode, 1, done.stdout)
+        self.assertRegex(done.stderr, r"^/.*a\.mcap: chunk at byte \d+ is compressed by lz4, must not be compressed; `mcap compress --compression none` makes such a file\n$")
+
 
 if __name__ == "__main__":
-    if len(sys.argv) < 2:
-        sys.exit(f"usage: {sys.argv[0]} WRITE_LOG [unittest arguments]")
-    ReadMcap.write_log = str(pathlib.Path(sys.argv.pop(1)).resolve())
+    if len(sys.argv) < 3:
+        sys.exit(f"usage: {sys.argv[0]} WRITE_LOG READ_LOG [unittest arguments]")
+    LogExchange.write_log, LogExchange.read_log = (str(pathlib.Path(program).resolve()) for program in sys.argv[1:3])
+    del sys.argv[1:3]
     if shutil.which("node") is None or not all((ROOT / "webui/node_modules" / package).exists() for package in PACKAGES):
         print("skipped: node or the packages of webui/ are not installed; tools/install_deps.sh installs them")
         sys.exit(77)
