@@ -10,7 +10,7 @@
 //   lost TOPIC | refused TOPIC                        -> number
 //   stream TOPIC SIZE MS                              -> ok; from now on writes a pattern each MS, seeds counting from
 //   0 publications                                      -> TOPIC TYPE ID, blanks between rss -> memory in use [kB]
-// usage: bus_peer DOMAIN
+// usage: bus_peer DOMAIN [INTERFACE [multicast] [PEER...]]
 #include <poll.h>
 #include <unistd.h>
 
@@ -50,12 +50,7 @@ std::vector<std::byte> unhex(const std::string& text) {
 
 class Peer {
  public:
-  explicit Peer(int domain)
-      : bus_([&] {
-          BusOptions options;
-          options.domain = domain;
-          return options;
-        }()) {}
+  explicit Peer(const BusOptions& options) : bus_(options) {}
 
   std::string answer(const std::string& line) {
     std::istringstream words(line);
@@ -166,7 +161,16 @@ class Peer {
 
 int main(int count, char** arguments) {
   try {
-    tassilo::Peer peer(count > 1 ? std::stoi(arguments[1]) : 0);
+    tassilo::BusOptions options;
+    if (count > 1) options.domain = std::stoi(arguments[1]);
+    if (count > 2) options.interface = arguments[2];
+    for (int i = 3; i < count; ++i) {
+      if (arguments[i] == std::string("multicast"))
+        options.multicast = true;
+      else
+        options.peers.push_back(arguments[i]);
+    }
+    tassilo::Peer peer(options);
     std::cout << "ready" << std::endl;
     for (std::string line; std::getline(std::cin, line);) {
       try {
