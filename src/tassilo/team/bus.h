@@ -154,7 +154,7 @@ class Bus {
   Bus(const Bus&) = delete;
   Bus& operator=(const Bus&) = delete;
 
-  /// Throws Error when the options are out of range, or this bus already uses the topic with another type.
+  /// Throws Error when the options are out of range, or this bus uses, or has used, the topic with another type.
   BusWriter writer(const BusTopic& topic);
   BusReader reader(const BusTopic& topic);
 
