@@ -9,6 +9,10 @@ export interface FieldPlan {
   halfway_line?: boolean;
   areas?: { depth: number; width: number }[];
   goals?: { side: "+x" | "-x"; color: string; width: number; depth: number }[];
+  /// Servers may leave these out.
+  segments?: [number, number, number, number][];
+  arcs?: [number, number, number, number, number][];
+  walls?: { x: [number, number]; y: [number, number] } | null;
 }
 
 export interface ServerState {
