@@ -98,3 +98,10 @@ export const server_api: Api = {
   stages: () => ask("/api/stages"),
   change: (change) => ask("/api/stages", with_json("PUT", change)),
 };
+
+/// Why a request failed, in words.
+export function reason(error: unknown): string {
+  if (error instanceof DOMException && error.name === "TimeoutError") return "the server does not answer";
+  if (error instanceof TypeError) return "the server cannot be reached";
+  return error instanceof Error ? error.message : String(error);
+}

@@ -1,0 +1,33 @@
+import { Observable } from "../link/observable";
+
+/// Which windows the page shows: both, or one that was split off.
+export const page_views = [
+  { id: "both", title: "Both" },
+  { id: "field", title: "Field" },
+  { id: "table", title: "Table" },
+] as const;
+export type PageView = (typeof page_views)[number]["id"];
+
+function view_of_address(): PageView {
+  return page_views.find(({ id }) => location.hash === `#/${id}`)?.id ?? "both";
+}
+
+/// Follows the page's address.
+export function page_view(): Observable<PageView> {
+  const view = new Observable<PageView>(view_of_address());
+  addEventListener("hashchange", () => view.set(view_of_address()));
+  return view;
+}
+
+/// A window of its own; this page then shows the other one. Where the browser forbids new windows, it stays as it is.
+export function split_off(view: "field" | "table"): void {
+  const opened = open(`#/${view}`, `tassilo-monitor-${view}`, "popup,width=1200,height=760");
+  if (opened !== null) location.hash = view === "field" ? "#/table" : "#/field";
+}
+
+/// Share of the height that is the field's.
+export const usual_share = 0.58;
+
+export function share_within(share: number): number {
+  return Number.isFinite(share) ? Math.min(Math.max(share, 0.2), 0.85) : usual_share;
+}
