@@ -2,10 +2,13 @@
 export class DrawStatistics {
   private readonly times: number[] = [];
   drawn = 0;
+  /// How long the last ones took, mean of about 20. [ms]
+  mean_ms = 0;
 
   constructor(private readonly remembered_ms = 5000) {}
 
-  add(now: number): void {
+  add(now: number, took_ms: number): void {
+    this.mean_ms = this.drawn === 0 ? took_ms : this.mean_ms + (took_ms - this.mean_ms) / 20;
     ++this.drawn;
     this.times.push(now);
     while (this.times[0]! < now - this.remembered_ms) this.times.shift();

@@ -53,7 +53,8 @@ export class FieldPainter {
 
   private draw(now: number): void {
     this.is_old = false;
+    const begin = performance.now();
     draw_team(this.context, this.canvas, this.palette, this.density, this.session.content());
-    this.session.statistics.add(now);
+    this.session.statistics.add(now, performance.now() - begin);
   }
 }

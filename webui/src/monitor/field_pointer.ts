@@ -42,7 +42,6 @@ export function follow_pointer(painter: FieldPainter, session: MonitorSession, h
     } else if (event.button === 0) gesture = { kind: "measure", from: point, moved: false };
     if (event.button === 1) event.preventDefault();   // no scrolling by itself
     if (gesture !== null) canvas.setPointerCapture(event.pointerId);
-    canvas.focus({ preventScroll: true });
   }, options);
 
   canvas.addEventListener("pointermove", (event) => {

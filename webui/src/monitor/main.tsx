@@ -18,6 +18,8 @@ const monitor = {
   get messages() { return session.feed.messages; },
   /// Between two drawings of the last 5 s.
   get longest_gap_ms() { return session.statistics.longest_gap_ms(performance.now()); },
+  /// A drawing takes, without what the browser does of its own afterwards; mean of late.
+  get draw_ms() { return session.statistics.mean_ms; },
   /// Of the team picture that is shown. [s]
   get t() { return session.feed.drawn.value?.t ?? null; },
   get picture() { return session.feed.drawn.value; },

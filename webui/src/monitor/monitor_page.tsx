@@ -82,7 +82,7 @@ function Windows({ session, view }: { session: MonitorSession; view: PageView })
   // What is shown while nothing comes is from before; it must not look as if it were now.
   const is_old = condition.tone === "bad" || condition.text.startsWith("no team picture");
   return (
-    <main class={is_old ? "windows old" : "windows"} style={{ "--share": share }} data-show="content">
+    <main class={is_old ? "windows old" : "windows"} style={{ "--above": `${share}fr`, "--below": `${1 - share}fr` }} data-show="content">
       <h1 class="unseen">Monitor</h1>
       {view !== "table" && <FieldWindow session={session} is_alone={view === "field"} />}
       {view === "both" && <Divider share={share} change={change} />}

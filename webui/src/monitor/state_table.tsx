@@ -27,11 +27,12 @@ export function TableWindow({ session, is_alone }: { session: MonitorSession; is
       </header>
       <div class="wide" tabIndex={0} role="region" aria-labelledby="table-title">
         <table class="robots" style={{ width: `${columns.reduce((sum, column) => sum + column.width_em, 0)}em` }}>
-          <colgroup>{columns.map(({ key, width_em }) => <col key={key} style={{ width: `${width_em}em` }} />)}</colgroup>
+          {/* The last one takes what is left. */}
+          <colgroup>{columns.map(({ key, width_em }, i) => <col key={key} style={i + 1 < columns.length ? { width: `${width_em}em` } : {}} />)}</colgroup>
           <thead>
             <tr>
               {columns.map(({ key, title, unit, hint, is_number }) => (
-                <th key={key} scope="col" class={is_number ? "number" : undefined} title={hint}>{title}{unit && <small> {unit}</small>}</th>
+                <th key={key} scope="col" class={is_number ? "number" : undefined} title={hint}>{title}<small>{unit || "\u00a0"}</small></th>
               ))}
             </tr>
           </thead>
