@@ -68,8 +68,9 @@ export function draw_team(context: Canvas2D, size: Size, palette: Palette, densi
   if (plan) draw_plan(pen, plan);
   else draw_axes(pen);
   if (picture !== null) {
-    // The chosen one last, so that it lies on top.
-    const robots = picture.robots.filter(has_place).sort((a, b) => Number(a.id === selected) - Number(b.id === selected));
+    // Who is heard lies above who is not, the chosen one above all.
+    const height = ({ id, presence }: Placed): number => (id === selected ? 3 : presence === "here" ? 2 : presence === "stale" ? 1 : 0);
+    const robots = picture.robots.filter(has_place).sort((a, b) => height(a) - height(b));
     const seen = robots.map((robot) => ({ robot, in_robot: pen.within(compose(canvas, from_pose(robot.scene.pose))) }));
     const details = { labels: false, bounds: false, uncertainty: layers.uncertainty };
     if (layers.free_space) for (const { robot, in_robot } of seen) draw_free_space(in_robot, robot, robot.id === selected);

@@ -97,8 +97,12 @@ export function duration_words(seconds: number): string {
   return `${Math.floor(minutes / 60)}:${two(minutes % 60)} h`;
 }
 
-/// Where in what can be looked at the moment is.
-export function age_words(moment: Moment, mode: Mode, span: Span): string {
+/// Live, but nothing came for so long, is not now any more, [s].
+export const longest_now = 1.5;
+
+/// Where in what can be looked at the moment is. silence  since the last news of live, [s]
+export function age_words(moment: Moment, mode: Mode, span: Span, silence = 0): string {
   if (mode === "log") return `${duration_words(moment.t - span.begin)} of ${duration_words(span.end - span.begin)}`;
-  return moment.is_live ? "now" : `${duration_words(span.end - moment.t)} ago`;
+  if (moment.is_live) return silence > longest_now ? `${duration_words(silence)} ago` : "now";
+  return `${duration_words(span.end - moment.t)} ago`;
 }

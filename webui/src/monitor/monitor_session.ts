@@ -21,6 +21,8 @@ export interface TimeView {
   readonly span: Span;
   /// Is there anything to look back at?
   readonly can_look_back: boolean;
+  /// Live: since the last team picture came. [s]
+  readonly silence: number;
 }
 
 const remembered_layers = "tassilo.monitor.layers";
@@ -261,7 +263,7 @@ export class MonitorSession {
   private publish(now: number): void {
     this.last_publish = now;
     if (this.state.value === null) return;
-    this.time.set({ mode: this.mode, moment: this.current(), span: this.span(now), can_look_back: this.can_look_back });
+    this.time.set({ mode: this.mode, moment: this.current(), span: this.span(now), can_look_back: this.can_look_back, silence: (this.feed.silence(now) ?? 0) / 1000 });
   }
 
   private async ask_state(): Promise<void> {
@@ -283,6 +285,7 @@ export class MonitorSession {
     this.moment = first_moment(mode, this.span());
     if (mode === "live") this.channel.start();
     else this.channel.stop();
+    this.publish(performance.now());
   }
 
   private ask_news(picture: TeamPicture, now: number): void {

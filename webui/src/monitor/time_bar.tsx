@@ -1,6 +1,6 @@
 import { useState } from "preact/hooks";
 import { useValue } from "../link/observable";
-import { age_words, clock_words, duration_words, type Span, speeds } from "./moment";
+import { age_words, clock_words, type Span, speeds } from "./moment";
 import type { MonitorSession } from "./monitor_session";
 
 /// When it is: what can be looked back at, and how it is played.
@@ -14,7 +14,7 @@ export function TimeBar({ session }: { session: MonitorSession }) {
   const is_live = moment?.is_live ?? false;
   const off = !(time?.can_look_back ?? false);
   return (
-    <div class={`time-bar-row ${is_live ? "" : "past"}`} role="group" aria-label="Time" data-show="time">
+    <div class={`time-bar-row ${mode === "live" && moment !== undefined && !is_live ? "past" : ""}`} role="group" aria-label="Time" data-show="time">
       <div class="play">
         <button type="button" disabled={off} aria-label="one picture back" title="one picture back (←)" onClick={() => session.step(-1)}>‹</button>
         <button type="button" class="play-button" disabled={off} title="or the space key" data-show="play" onClick={() => session.toggle_play()}>
@@ -26,16 +26,16 @@ export function TimeBar({ session }: { session: MonitorSession }) {
         </select>
       </div>
       <input type="range" class="scrubber" step="any" min={span.begin} max={span.end} value={is_live ? span.end : (moment?.t ?? span.end)} disabled={off} aria-label="time"
-             aria-valuetext={time ? `${clock_words(time.moment.t)}, ${age_words(time.moment, mode, time.span)}` : undefined} data-show="scrubber"
+             aria-valuetext={time ? `${clock_words(time.moment.t)}, ${age_words(time.moment, mode, time.span, time.silence)}` : undefined} data-show="scrubber"
              onPointerDown={() => set_held(span)} onPointerUp={() => set_held(null)} onPointerCancel={() => set_held(null)} onLostPointerCapture={() => set_held(null)}
              onInput={(event) => session.seek(Number(event.currentTarget.value))} />
       <div class="now">
         <b data-show="clock">{moment ? clock_words(moment.t) : "–"}</b>
-        <span class="faint" data-show="age">{time ? age_words(time.moment, mode, time.span) : ""}</span>
+        <span class="faint" data-show="age">{time ? age_words(time.moment, mode, time.span, time.silence) : ""}</span>
       </div>
-      {mode === "live"
-        ? <button type="button" class="live-button" aria-pressed={is_live} title="back to live (l)" data-show="live" disabled={off} onClick={() => session.to_end()}>Live</button>
-        : <span class="faint length">{time && duration_words(time.span.end - time.span.begin)}</span>}
+      {mode === "live" && (
+        <button type="button" class="live-button" aria-pressed={is_live} title="back to live (l)" data-show="live" disabled={off} onClick={() => session.to_end()}>Live</button>
+      )}
     </div>
   );
 }
