@@ -269,6 +269,16 @@ async function main(url, browser, screenshots, { robots: wanted, "least-rate": l
     await until("the other window has the table", async () => (await other.locator("table.robots tbody tr").count()) >= Number(wanted));
     assert.equal(await other.locator('[data-show="field"]').count(), 0);
     assert.equal(await page.locator("table.robots").count(), 0, "this one has the field alone");
+    await until("the other window has the time", () => other.locator('[data-show="play"]').isEnabled());
+    await other.locator('[data-show="play"]').click();
+    await until("both are paused", async () => /paused/.test(await condition()));
+    await until("at the same time", async () => (await told("t")) === (await other.evaluate(() => window.tassilo_monitor.t)));
+    const first = (await shown_picture()).robots[0].id;
+    await other.locator(`tr[data-robot="${first}"]`).click();
+    await until("both chose the same robot", async () => (await show("robot").count()) === 1 && (await show("robot").getAttribute("aria-label")) === `Robot ${first}`);
+    await page.keyboard.press("Escape");
+    await other.locator('[data-show="live"]').click();
+    await until("both are live", async () => (await condition()) === "live");
     await picture("table_alone", false, other);
     await other.close();
     await picture("field_alone", false);

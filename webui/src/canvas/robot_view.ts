@@ -30,7 +30,7 @@ export function draw_robot_view(context: Canvas2D, size: Size, palette: Palette,
     draw_goals(pen, scene, all_details);
     draw_robots(pen, scene, all_details);
     draw_balls(pen, scene, all_details);
-    draw_tracks(pen, scene);
+    draw_tracks(pen, scene, all_details);
   }
   draw_self(pen, (9 * density) / scale_of(transform));
 }

@@ -1,4 +1,5 @@
 import { meters } from "../format";
+import type { FieldPlan } from "../link/api";
 import type { Goal, OnFloor, Point, Robot, Scene, Team, Track } from "../scene";
 import { covariance_ellipse } from "./ellipse";
 import type { Palette, Pen } from "./pen";
@@ -8,9 +9,24 @@ import type { Palette, Pen } from "./pen";
 /// Standard deviations that ellipses of uncertainty show.
 export const shown_sigmas = 2;
 
-/// Of balls, where no field file is at hand, [m].
-const ball_radius = 0.105;
-const robot_radius = 0.22;
+/// Of things whose own size nobody told, [m].
+export interface Sizes {
+  readonly ball_radius: number;
+  readonly robot_radius: number;
+}
+
+/// Where no field file is at hand.
+const usual_sizes: Sizes = { ball_radius: 0.105, robot_radius: 0.22 };
+
+/// The middle of what the field allows.
+export function sizes_of(plan: FieldPlan | null | undefined): Sizes {
+  const ball = plan?.ball?.radius;
+  const robot = plan?.robots?.width;
+  return {
+    ball_radius: ball ? (ball[0] + ball[1]) / 2 : usual_sizes.ball_radius,
+    robot_radius: robot ? (robot[0] + robot[1]) / 4 : usual_sizes.robot_radius,
+  };
+}
 
 /// How much of a thing is drawn beside its place.
 export interface Details {
@@ -18,9 +34,9 @@ export interface Details {
   /// On the distance, along the line of sight.
   readonly bounds: boolean;
   readonly uncertainty: boolean;
+  readonly sizes: Sizes;
 }
-export const all_details: Details = { labels: true, bounds: true, uncertainty: true };
-export const unlabeled: Details = { ...all_details, labels: false };
+export const all_details: Details = { labels: true, bounds: true, uncertainty: true, sizes: usual_sizes };
 
 export function team_color(team: Team, palette: Palette): string {
   return team === "unknown" ? palette.unknown : palette[team];
@@ -63,18 +79,18 @@ export function draw_robots(pen: Pen, scene: { readonly robots: readonly Omit<Ro
   for (const robot of scene.robots) draw_robot(pen, robot, details);
 }
 
-function draw_robot(pen: Pen, robot: Omit<Robot, "box">, { labels, bounds, uncertainty }: Details): void {
+function draw_robot(pen: Pen, robot: Omit<Robot, "box">, { labels, bounds, uncertainty, sizes }: Details): void {
   const foot = place_of(robot);
   const center = robot.center ?? foot;
   if (foot === null || center === null) return;
   const color = team_color(robot.team, pen.palette);
   if (robot.cov && uncertainty) pen.ellipse(covariance_ellipse(foot, robot.cov, shown_sigmas), color, 0.12);
   if (bounds) whisker(pen, robot, color);
-  pen.ring(center, robot.width === null ? robot_radius : robot.width / 2, 5, color, 2);
+  pen.ring(center, robot.width == null ? sizes.robot_radius : robot.width / 2, 5, color, 2);
   if (labels) pen.label(meters(robot.distance), center, color, [12, 0]);
 }
 
-export function draw_balls(pen: Pen, scene: { readonly balls: readonly OnFloor[] }, { labels, bounds, uncertainty }: Details): void {
+export function draw_balls(pen: Pen, scene: { readonly balls: readonly OnFloor[] }, { labels, bounds, uncertainty, sizes }: Details): void {
   // The best one last, so that it lies on top.
   for (let i = scene.balls.length - 1; i >= 0; --i) {
     const ball = scene.balls[i]!;
@@ -82,23 +98,23 @@ export function draw_balls(pen: Pen, scene: { readonly balls: readonly OnFloor[]
     if (at === null) continue;
     if (ball.cov && uncertainty) pen.ellipse(covariance_ellipse(at, ball.cov, shown_sigmas), pen.palette.ball, 0.25);
     if (bounds) whisker(pen, ball, pen.palette.ball);
-    if (i === 0) pen.disc(at, ball_radius, 5, pen.palette.ball);
-    else pen.ring(at, ball_radius, 5, pen.palette.ball, 1.5, [3, 3]);
+    if (i === 0) pen.disc(at, sizes.ball_radius, 5, pen.palette.ball);
+    else pen.ring(at, sizes.ball_radius, 5, pen.palette.ball, 1.5, [3, 3]);
     if (labels && i === 0) pen.label(meters(ball.distance), at, pen.palette.ball, [11, 0]);
   }
 }
 
 /// A cross where the object is thought to be, dashed ring while it is not seen, and its way of the next second.
-export function draw_tracks(pen: Pen, scene: { readonly tracks: readonly Track[] }): void {
-  for (const track of scene.tracks) draw_track(pen, track);
+export function draw_tracks(pen: Pen, scene: { readonly tracks: readonly Track[] }, { uncertainty, sizes }: Details): void {
+  for (const track of scene.tracks) draw_track(pen, track, uncertainty, sizes);
 }
 
-function draw_track(pen: Pen, track: Track): void {
+function draw_track(pen: Pen, track: Track, uncertainty: boolean, sizes: Sizes): void {
   const color = track.kind === "ball" ? pen.palette.ball : team_color(track.team, pen.palette);
   const at: Point = [track.x, track.y];
   if (track.age > 0) {
-    pen.ellipse(covariance_ellipse(at, track.cov, shown_sigmas, 4), color, 0.08);
-    pen.ring(at, track.kind === "ball" ? ball_radius : robot_radius, 5, color, 1.5, [2, 4]);
+    if (uncertainty) pen.ellipse(covariance_ellipse(at, track.cov, shown_sigmas, 4), color, 0.08);
+    pen.ring(at, track.kind === "ball" ? sizes.ball_radius : sizes.robot_radius, 5, color, 1.5, [2, 4]);
   }
   if (is_moving(track)) pen.arrow(at, [track.x + track.vx, track.y + track.vy], color);
 }

@@ -13,6 +13,8 @@ export interface FieldPlan {
   segments?: [number, number, number, number][];
   arcs?: [number, number, number, number, number][];
   walls?: { x: [number, number]; y: [number, number] } | null;
+  ball?: { radius: [number, number] };
+  robots?: { width: [number, number] };
 }
 
 export interface ServerState {

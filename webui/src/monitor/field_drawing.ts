@@ -2,7 +2,7 @@ import { area_around, draw_axes, draw_plan, plan_area } from "../canvas/plan";
 import { covariance_ellipse } from "../canvas/ellipse";
 import { free_polygons } from "../canvas/free_space";
 import { type Canvas2D, type Palette, Pen } from "../canvas/pen";
-import { draw_balls, draw_goals, draw_lines, draw_mirrored, draw_robots, draw_tracks, place_of, shown_sigmas, team_color } from "../canvas/things";
+import { draw_balls, draw_goals, draw_lines, draw_mirrored, draw_robots, draw_tracks, place_of, shown_sigmas, sizes_of, team_color } from "../canvas/things";
 import { type Affine, apply, type Area, compose, from_pose, scale_of, type Size } from "../canvas/transform";
 import type { FieldPlan } from "../link/api";
 import type { TeamPicture, TeamRobot } from "../link/monitor_api";
@@ -28,9 +28,8 @@ type Placed = TeamRobot & { scene: { pose: Pose } };
 
 const has_place = (robot: TeamRobot): robot is Placed => robot.scene.pose !== null;
 
-/// Robots are never smaller on the screen, [px of the page], and on the floor as large as this, but not out of proportion to a small field, [m].
+/// Robots are never smaller on the screen, [px of the page], and where nobody tells their size not out of proportion to a small field.
 const least_radius_px = 10;
-const usual_radius = 0.22;
 const largest_share_of_field = 0.027;
 
 /// So much of a robot is left that was not heard for a while.
@@ -42,7 +41,9 @@ export function team_area({ picture, plan }: Pick<FieldContent, "picture" | "pla
 
 /// The radius of a robot's disc in pixels of the canvas.
 export function disc_radius(plan: FieldPlan | null, canvas: Affine, density: number): number {
-  return Math.max(Math.min(usual_radius, largest_share_of_field * (plan?.length ?? Infinity)) * scale_of(canvas), least_radius_px * density);
+  const told = sizes_of(plan).robot_radius;
+  const radius = plan?.robots === undefined ? Math.min(told, largest_share_of_field * (plan?.length ?? Infinity)) : told;
+  return Math.max(radius * scale_of(canvas), least_radius_px * density);
 }
 
 /// The robot whose disc is at a point of the canvas, or just beside it; of several, the nearest.
@@ -72,7 +73,7 @@ export function draw_team(context: Canvas2D, size: Size, palette: Palette, densi
     const height = ({ id, presence }: Placed): number => (id === selected ? 3 : presence === "here" ? 2 : presence === "stale" ? 1 : 0);
     const robots = picture.robots.filter(has_place).sort((a, b) => height(a) - height(b));
     const seen = robots.map((robot) => ({ robot, in_robot: pen.within(compose(canvas, from_pose(robot.scene.pose))) }));
-    const details = { labels: false, bounds: false, uncertainty: layers.uncertainty };
+    const details = { labels: false, bounds: false, uncertainty: layers.uncertainty, sizes: sizes_of(plan) };
     if (layers.free_space) for (const { robot, in_robot } of seen) draw_free_space(in_robot, robot, robot.id === selected);
     if (layers.trails) for (const robot of robots) draw_trail(pen, robot, trails, picture.t);
     if (layers.lines) for (const { robot, in_robot } of seen) draw_lines(in_robot, robot.scene);
@@ -82,7 +83,7 @@ export function draw_team(context: Canvas2D, size: Size, palette: Palette, densi
       for (const { robot, in_robot } of seen) draw_sight(in_robot, robot);
       for (const { robot, in_robot } of seen) draw_balls(in_robot, robot.scene, details);
     }
-    if (layers.tracks) for (const { robot, in_robot } of seen) draw_tracks(in_robot, robot.scene);
+    if (layers.tracks) for (const { robot, in_robot } of seen) draw_tracks(in_robot, robot.scene, details);
     const radius = disc_radius(plan, canvas, density);
     for (const { robot, in_robot } of seen) draw_member(pen, in_robot, robot, { radius, is_selected: robot.id === selected, uncertainty: layers.uncertainty });
   }

@@ -4,9 +4,12 @@ import "./monitor.css";
 import { page_place } from "./field_pointer";
 import { MonitorPage } from "./monitor_page";
 import { MonitorSession } from "./monitor_session";
+import { group_channel } from "./windows";
 
 const session = new MonitorSession();
 session.start();
+const group = group_channel();
+if (group !== null) session.join(group);
 
 /// For tests and for whoever measures the page.
 const monitor = {

@@ -25,6 +25,9 @@ export interface TimeView {
   readonly silence: number;
 }
 
+/// What windows that belong together tell each other: all show the same time and the same robot. "hello": a new one asks.
+type Told = "hello" | { readonly moment: Moment; readonly selected: number | null };
+
 const remembered_layers = "tassilo.monitor.layers";
 
 /// Between two pictures of the past, where the server does not say, [s].
@@ -68,6 +71,9 @@ export class MonitorSession {
   private last_publish = -Infinity;
   private last_news = -Infinity;
   private last_shown: number | null = null;
+  private others: BroadcastChannel | null = null;
+  /// What another window told before the server did.
+  private told_early: Moment | null = null;
   private readonly channel: Channel;
   private readonly past: NewestDecoder<number, TeamPicture | null>;
   private readonly past_trails: NewestDecoder<number, { t: number; trails: Trail[] }>;
@@ -83,6 +89,22 @@ export class MonitorSession {
       this.trails.take(trails, t);
       this.trails_changed.set(this.trails_changed.value + 1);
     });
+  }
+
+  /// From now on, windows that belong together show the same.
+  join(channel: BroadcastChannel): void {
+    this.others = channel;
+    channel.onmessage = ({ data }: MessageEvent<Told>) => {
+      if (data === "hello") return this.tell();
+      this.selected.set(data.selected);
+      if (this.can_look_back) this.take(data.moment);
+      else this.told_early = data.moment;
+    };
+    channel.postMessage("hello" satisfies Told);
+  }
+
+  private tell(): void {
+    this.others?.postMessage({ moment: this.current(), selected: this.selected.value } satisfies Told);
   }
 
   start(): void {
@@ -124,6 +146,7 @@ export class MonitorSession {
 
   select(id: number | null): void {
     this.selected.set(id);
+    this.tell();
     this.said.set(id === null ? "no robot is chosen" : `robot ${id}`);
   }
 
@@ -204,6 +227,11 @@ export class MonitorSession {
 
   private go(moment: Moment): void {
     if (!this.can_look_back) return;
+    this.take(moment);
+    this.tell();
+  }
+
+  private take(moment: Moment): void {
     const was_live = this.moment.is_live;
     this.moment = moment;
     this.wanted_at = -Infinity;
@@ -285,6 +313,8 @@ export class MonitorSession {
     this.moment = first_moment(mode, this.span());
     if (mode === "live") this.channel.start();
     else this.channel.stop();
+    if (this.told_early !== null) this.take(this.told_early);
+    this.told_early = null;
     this.publish(performance.now());
   }
 

@@ -25,6 +25,19 @@ export function split_off(view: "field" | "table"): void {
   if (opened !== null) location.hash = view === "field" ? "#/table" : "#/field";
 }
 
+const group_key = "tassilo.monitor.group";
+
+/// Joins this page with the windows that were split off from it, which inherit its session's storage: what one says, all others hear. Null where browsers forbid it.
+export function group_channel(): BroadcastChannel | null {
+  try {
+    const group = sessionStorage.getItem(group_key) ?? String(Math.random());
+    sessionStorage.setItem(group_key, group);
+    return new BroadcastChannel(`tassilo-monitor ${group}`);
+  } catch {
+    return null;
+  }
+}
+
 /// Share of the height that is the field's.
 export const usual_share = 0.58;
 
