@@ -1,5 +1,5 @@
-// The monitor's page as a person uses it, in a browser, against a server that is live: looks, switches layers, looks back, chooses a robot, measures, saves, resizes; and how
-// often the field is drawn.
+// The monitor's page as a person uses it, in a browser. Against a server that is live: looks, switches layers, looks back, chooses a robot, measures, saves, resizes; and how
+// often the field is drawn. Against one that reads a log: looks, plays it to its end, and measures how often it is drawn while it plays.
 //
 // usage: node e2e/monitor.mjs [options] --url URL
 //        node e2e/monitor.mjs [options] -- COMMAND...
@@ -7,7 +7,7 @@
 //          --robots N       so many are waited for, 10
 //          --least-rate N   drawn a second, over 5 s; 0: it is only told. 0
 // COMMAND starts a server that prints its address (http://...); it is ended afterwards. Exit code 77: skipped, no browser.
-// The server must have heard the robots for some seconds, and at least one must have a pose and move.
+// The server must have heard the robots for half a minute, or its log be as long, and at least one must have a pose and move.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { open_page, run, until } from "./run.mjs";
@@ -56,14 +56,70 @@ async function main(url, browser, screenshots, { robots: wanted, "least-rate": l
     const [file] = await Promise.all([page.waitForEvent("download"), button.click()]);
     return { name: file.suggestedFilename(), bytes: readFileSync(await file.path()) };
   };
+  /// Drawings and messages a second, over 5 s.
+  const measure_rate = async () => {
+    const before = { drawn: await told("drawn"), messages: await told("messages") };
+    const begin = Date.now();
+    await pause(5000);
+    const seconds = (Date.now() - begin) / 1000;
+    const rate = ((await told("drawn")) - before.drawn) / seconds;
+    const heard = ((await told("messages")) - before.messages) / seconds;
+    console.log(JSON.stringify({
+      robots: (await shown_picture()).robots.length, seconds: Number(seconds.toFixed(2)), drawn_per_second: Number(rate.toFixed(1)), messages_per_second: Number(heard.toFixed(1)),
+      longest_gap_ms: Math.round(await told("longest_gap_ms")), draw_ms: Number((await told("draw_ms")).toFixed(2)),
+    }));
+    assert.ok(rate >= Number(least_rate), `${rate} drawn a second, must be ${least_rate}`);
+    return heard;
+  };
   const drawn_after = async (act) => {
     const before = await told("drawn");
     await act();
     await until("the field is drawn anew", async () => (await told("drawn")) > before);
   };
 
+  /// A log waits at its beginning, plays when it is told to, and ends.
+  const log = async () => {
+    const { begin, end: log_end } = await api("GET", "/api/monitor");
+    await step("a log waits at its beginning", async () => {
+      await until("a picture is shown", async () => (await told("picture")) !== null);
+      await until("it says so", async () => (await condition()) === "log, paused");
+      assert.ok(Math.abs((await told("t")) - begin) < 1, `begins at ${await told("t")}, the log at ${begin}`);
+      assert.equal(await show("live").count(), 0, "there is no live in a log");
+      await picture("log", false);
+    });
+    await step("plays when it is told to, as fast as it should", async () => {
+      await page.keyboard.press("Space");
+      await until("robots are there", async () => (await rows().count()) > 0);
+      const t = await told("t");
+      await measure_rate();
+      const played = (await told("t")) - t;
+      assert.ok(played > 3.5 && played < 7, `5 s are ${played} s`);
+      await picture("log_played", false);
+    });
+    await step("shows the picture of a robot, or says that there is none", async () => {
+      await page.keyboard.press("Space");
+      await rows().first().click();
+      await until("one of both", async () => (await page.locator('[data-show="robot-picture"][data-there="true"]').count()) === 1
+        || /no picture of this time/.test(await show("robot-picture-words").innerText()));
+      await page.keyboard.press("Escape");
+    });
+    await step("goes to its end by key, stops there, and begins anew", async () => {
+      await page.keyboard.press("End");
+      await until("its end is shown", async () => Math.abs((await told("t")) - log_end) < 1);
+      await picture("log_end", false);
+      await page.keyboard.press("Space");
+      await until("it begins anew", async () => (await condition()) === "log, playing" && (await told("t")) < begin + 5);
+      await page.keyboard.press("Home");
+    });
+  };
+
+  await page.goto(url);   // its token becomes a cookie
+  if ((await api("GET", "/api/monitor")).mode === "log") {
+    await log();
+    return end();
+  }
+
   await step("the robots are there, in the table and on the field", async () => {
-    await page.goto(url);
     await until(`${wanted} robots are there`, async () => (await rows().count()) >= Number(wanted));
     await until("it is live", async () => (await condition()) === "live");
     const ids = await rows().evaluateAll((all) => all.map((row) => Number(row.dataset.robot)));
@@ -79,18 +135,7 @@ async function main(url, browser, screenshots, { robots: wanted, "least-rate": l
   });
 
   await step("the field is drawn as often as it should be", async () => {
-    const before = { drawn: await told("drawn"), messages: await told("messages") };
-    const begin = Date.now();
-    await pause(5000);
-    const seconds = (Date.now() - begin) / 1000;
-    const rate = ((await told("drawn")) - before.drawn) / seconds;
-    const heard = ((await told("messages")) - before.messages) / seconds;
-    console.log(JSON.stringify({
-      robots: (await shown_picture()).robots.length, seconds: Number(seconds.toFixed(2)), drawn_per_second: Number(rate.toFixed(1)), messages_per_second: Number(heard.toFixed(1)),
-      longest_gap_ms: Math.round(await told("longest_gap_ms")), draw_ms: Number((await told("draw_ms")).toFixed(2)),
-    }));
-    assert.ok(heard > 0, "team pictures come");
-    assert.ok(rate >= Number(least_rate), `${rate} drawn a second, must be ${least_rate}`);
+    assert.ok((await measure_rate()) > 0, "team pictures come");
   });
 
   await step("the table says what the team picture says, and its columns stay where they are", async () => {
@@ -164,7 +209,6 @@ async function main(url, browser, screenshots, { robots: wanted, "least-rate": l
     await until("and on", async () => (await told("t")) > back);
     const paused = await told("t");
     await show("speed").selectOption("5");
-    await page.evaluate(() => document.activeElement?.blur());
     await page.keyboard.press("Space");
     await pause(2000);
     await page.keyboard.press("Space");
@@ -272,7 +316,8 @@ async function main(url, browser, screenshots, { robots: wanted, "least-rate": l
     await until("the other window has the time", () => other.locator('[data-show="play"]').isEnabled());
     await other.locator('[data-show="play"]').click();
     await until("both are paused", async () => /paused/.test(await condition()));
-    await until("at the same time", async () => (await told("t")) === (await other.evaluate(() => window.tassilo_monitor.t)));
+    // What was looked back at may be remembered less often than it came.
+    await until("at the same time", async () => Math.abs((await told("t")) - (await other.evaluate(() => window.tassilo_monitor.t))) < 0.2);
     const first = (await shown_picture()).robots[0].id;
     await other.locator(`tr[data-robot="${first}"]`).click();
     await until("both chose the same robot", async () => (await show("robot").count()) === 1 && (await show("robot").getAttribute("aria-label")) === `Robot ${first}`);

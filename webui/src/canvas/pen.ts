@@ -38,6 +38,9 @@ export type Canvas2D = Pick<
   | "fillStyle" | "strokeStyle" | "lineWidth" | "globalAlpha" | "font" | "textAlign" | "textBaseline" | "lineJoin" | "lineCap"
 >;
 
+/// Half the height of a digit, of a font's height.
+const digit_share = 0.36;
+
 /// Draws in meters of a frame; widths and letters keep their size on the screen.
 export class Pen {
   constructor(
@@ -165,11 +168,11 @@ export class Pen {
     const c = this.context;
     c.font = `700 ${height_px * this.density}px system-ui, sans-serif`;
     c.textAlign = "center";
-    c.textBaseline = "middle";
+    c.textBaseline = "alphabetic";
     c.fillStyle = color;
     const [x, y] = this.at(at);
     c.globalAlpha = this.opacity;
-    c.fillText(text, x, y);
+    c.fillText(text, x, y + digit_share * height_px * this.density);
     c.globalAlpha = 1;
   }
 

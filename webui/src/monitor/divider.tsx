@@ -1,15 +1,17 @@
 import { useRef } from "preact/hooks";
-import { share_within, usual_share } from "./windows";
+import { share_within } from "./windows";
 
 interface Props {
   share: number;
   change: (share: number) => void;
+  /// As it is until somebody moves it.
+  reset: () => void;
 }
 
 const step = 0.03;
 
 /// Between two windows that lie above each other: dragged, or moved by keys while it has the focus; a double click makes it as usual.
-export function Divider({ share, change }: Props) {
+export function Divider({ share, change, reset }: Props) {
   const bar = useRef<HTMLDivElement>(null);
   const drag = (event: PointerEvent): void => {
     if (!bar.current!.hasPointerCapture(event.pointerId)) return;
@@ -17,14 +19,15 @@ export function Divider({ share, change }: Props) {
     change(share_within((event.clientY - box.top) / box.height));
   };
   const key = (event: KeyboardEvent): void => {
-    const next = { ArrowUp: share - step, ArrowDown: share + step, Home: 0, End: 1, Enter: usual_share }[event.key];
+    const next = { ArrowUp: share - step, ArrowDown: share + step, Home: 0, End: 1, Enter: null }[event.key];
     if (next === undefined) return;
     event.preventDefault();
-    change(share_within(next));
+    if (next === null) reset();
+    else change(share_within(next));
   };
   return (
     <div ref={bar} class="divider" role="separator" tabIndex={0} aria-orientation="horizontal" aria-label="Share of the field window" aria-valuemin={20} aria-valuemax={85}
          aria-valuenow={Math.round(share * 100)} data-show="divider" onPointerDown={(event) => bar.current!.setPointerCapture(event.pointerId)} onPointerMove={drag}
-         onDblClick={() => change(usual_share)} onKeyDown={key} />
+         onDblClick={reset} onKeyDown={key} />
   );
 }

@@ -84,8 +84,10 @@ export function draw_team(context: Canvas2D, size: Size, palette: Palette, densi
       for (const { robot, in_robot } of seen) draw_balls(in_robot, robot.scene, details);
     }
     if (layers.tracks) for (const { robot, in_robot } of seen) draw_tracks(in_robot, robot.scene, details);
+    // Where it may be as well lies below where others are.
+    for (const robot of robots) draw_doubt(pen, robot, layers.uncertainty);
     const radius = disc_radius(plan, canvas, density);
-    for (const { robot, in_robot } of seen) draw_member(pen, in_robot, robot, { radius, is_selected: robot.id === selected, uncertainty: layers.uncertainty });
+    for (const { robot, in_robot } of seen) draw_member(pen, in_robot, robot, radius, robot.id === selected);
   }
   if (measure !== null) draw_measure(pen, measure);
 }
@@ -118,22 +120,21 @@ function draw_sight(in_robot: Pen, { team, scene }: Placed): void {
   });
 }
 
-interface MemberLook {
-  /// Pixels of the canvas.
-  readonly radius: number;
-  readonly is_selected: boolean;
-  readonly uncertainty: boolean;
+function draw_doubt(pen: Pen, { id, team, presence, scene: { pose } }: Placed, uncertainty: boolean): void {
+  const faded = pen.within(pen.transform, presence === "here" ? 1 : stale_opacity);
+  const color = team_color(team, pen.palette);
+  if (uncertainty && presence !== "gone") faded.ellipse(covariance_ellipse([pose.x, pose.y], pose.cov, shown_sigmas, 3), color, 0.15);
+  if (pose.mirror) draw_mirrored(faded, pose, color, `or ${id} here`);
 }
 
 /// A disc with its number and a nose forward; faded when it was not heard of late, an outline when not for long.
-function draw_member(pen: Pen, in_robot: Pen, robot: Placed, { radius, is_selected, uncertainty }: MemberLook): void {
+///
+/// radius  of the disc, pixels of the canvas
+function draw_member(pen: Pen, in_robot: Pen, robot: Placed, radius: number, is_selected: boolean): void {
   const { pose } = robot.scene;
   const at: Point = [pose.x, pose.y];
   const color = team_color(robot.team, pen.palette);
   const opacity = robot.presence === "stale" ? stale_opacity : 1;
-  const own = pen.within(pen.transform, opacity);
-  if (uncertainty && robot.presence !== "gone") own.ellipse(covariance_ellipse(at, pose.cov, shown_sigmas, 3), color, 0.15);
-  if (pose.mirror) draw_mirrored(own, pose, color, `or ${robot.id} here`);
   const r = radius / scale_of(pen.transform);
   const nose: Point[] = [[1.75 * r, 0], [0.72 * r, 0.7 * r], [0.72 * r, -0.7 * r]];
   const px = radius / pen.density;
@@ -143,7 +144,7 @@ function draw_member(pen: Pen, in_robot: Pen, robot: Placed, { radius, is_select
     pen.ring(at, r, 0, color, 1.5, [3, 3]);
   } else {
     in_robot.within(in_robot.transform, opacity).area(nose, color);
-    own.disc(at, r, 0, color);
+    pen.within(pen.transform, opacity).disc(at, r, 0, color);
   }
   if (is_selected) pen.ring(at, 1.15 * r, px + 3, pen.palette.self, 2.5);
   pen.inscribe(String(robot.id), at, robot.presence === "here" ? pen.palette.ground : pen.palette.text, (robot.id < 100 ? 1.2 : 0.9) * px);

@@ -7,9 +7,17 @@ import { key_help, press, release } from "./keys";
 import { memory, type MonitorSession, remember } from "./monitor_session";
 import { TableWindow } from "./state_table";
 import { TimeBar } from "./time_bar";
-import { page_view, page_views, type PageView, share_within } from "./windows";
+import { page_view, page_views, type PageView, share_within, usual_share } from "./windows";
 
 const remembered_share = "tassilo.monitor.share";
+
+/// Above the windows, about, [px].
+const height_of_bars = 115;
+
+function remembered_number(key: string): number | null {
+  const number = Number.parseFloat(memory(key) ?? "");
+  return Number.isFinite(number) ? number : null;
+}
 
 /// Both windows of the monitor, or the one that was split off.
 export function MonitorPage({ session }: { session: MonitorSession }) {
@@ -74,10 +82,11 @@ function Notices({ session }: { session: MonitorSession }) {
 
 function Windows({ session, view }: { session: MonitorSession; view: PageView }) {
   const condition = useValue(session.condition);
-  const [share, set_share] = useState(() => share_within(Number(memory(remembered_share) ?? NaN)));
-  const change = (next: number): void => {
-    set_share(next);
-    remember(remembered_share, next.toFixed(3));
+  const [moved, set_moved] = useState<number | null>(remembered_number(remembered_share));
+  const share = moved === null ? usual_share(innerHeight - height_of_bars) : share_within(moved);
+  const move = (next: number | null): void => {
+    set_moved(next);
+    remember(remembered_share, next === null ? "" : next.toFixed(3));
   };
   // What is shown while nothing comes is from before; it must not look as if it were now.
   const is_old = condition.tone === "bad" || condition.text.startsWith("no team picture");
@@ -85,7 +94,7 @@ function Windows({ session, view }: { session: MonitorSession; view: PageView })
     <main class={is_old ? "windows old" : "windows"} style={{ "--above": `${share}fr`, "--below": `${1 - share}fr` }} data-show="content">
       <h1 class="unseen">Monitor</h1>
       {view !== "table" && <FieldWindow session={session} is_alone={view === "field"} />}
-      {view === "both" && <Divider share={share} change={change} />}
+      {view === "both" && <Divider share={share} change={move} reset={() => move(null)} />}
       {view !== "field" && <TableWindow session={session} is_alone={view === "table"} />}
     </main>
   );

@@ -21,7 +21,11 @@ export function TimeBar({ session }: { session: MonitorSession }) {
           {moment?.playing ?? true ? "Pause" : "Play"}
         </button>
         <button type="button" disabled={off || is_live} aria-label="one picture on" title="one picture on (→)" onClick={() => session.step(1)}>›</button>
-        <select aria-label="speed" title="speed (< >)" disabled={off || is_live} value={moment?.speed ?? 1} data-show="speed" onChange={(event) => session.set_speed(Number(event.currentTarget.value))}>
+        <select aria-label="speed" title="speed (< >)" disabled={off || is_live} value={moment?.speed ?? 1} data-show="speed"
+                onChange={(event) => {
+                  session.set_speed(Number(event.currentTarget.value));
+                  event.currentTarget.blur();   // arrows step through time again
+                }}>
           {speeds.map((speed) => <option key={speed} value={speed}>{speed}×</option>)}
         </select>
       </div>

@@ -38,9 +38,14 @@ export function group_channel(): BroadcastChannel | null {
   }
 }
 
-/// Share of the height that is the field's.
-export const usual_share = 0.58;
+/// Of ten robots with title and head, [px].
+const height_of_table = 370;
+
+/// Share of the height that is the field's, until somebody moves the divider: the table needs no more than ten rows, and gets no more than half.
+export function usual_share(height: number): number {
+  return Math.min(Math.max(1 - height_of_table / height, 0.5), 0.7);
+}
 
 export function share_within(share: number): number {
-  return Number.isFinite(share) ? Math.min(Math.max(share, 0.2), 0.85) : usual_share;
+  return Math.min(Math.max(share, 0.2), 0.85);
 }
