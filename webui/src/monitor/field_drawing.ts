@@ -143,8 +143,12 @@ function draw_member(pen: Pen, in_robot: Pen, robot: Placed, radius: number, is_
     pen.disc(at, r, 0, pen.palette.ground);
     pen.ring(at, r, 0, color, 1.5, [3, 3]);
   } else {
+    // An edge of the ground's color tells robots apart that touch.
+    const faded = pen.within(pen.transform, opacity);
+    faded.ring(at, r, 0, pen.palette.ground, 3);
+    in_robot.within(in_robot.transform, opacity).outline(nose, pen.palette.ground, 3);
     in_robot.within(in_robot.transform, opacity).area(nose, color);
-    pen.within(pen.transform, opacity).disc(at, r, 0, color);
+    faded.disc(at, r, 0, color);
   }
   if (is_selected) pen.ring(at, 1.15 * r, px + 3, pen.palette.self, 2.5);
   pen.inscribe(String(robot.id), at, robot.presence === "here" ? pen.palette.ground : pen.palette.text, (robot.id < 100 ? 1.2 : 0.9) * px);
