@@ -21,10 +21,10 @@ export interface Column {
   readonly tone?: (robot: TeamRobot) => "warning" | "bad" | "faint" | "";
 }
 
-/// Shares and times beyond which somebody should look: more than a percent is lost in any hall, a tenth is felt in a game.
+/// Shares and times beyond which somebody should look: a percent is lost in any hall, a tenth is felt in a game; a clock as far off is among the server's troubles.
 const much_loss = 0.1;
 const late_s = 0.15;
-const wrong_clock_s = 0.05;
+const wrong_clock_s = 1;
 
 function number_column(key: string, title: string, unit: string, width_em: number, hint: string, value: (robot: TeamRobot) => number | null, digits: number,
                        tone?: (robot: TeamRobot) => "warning" | "bad" | ""): Column {

@@ -1,5 +1,5 @@
 import { reason } from "../link/api";
-import { browser_world, Channel } from "../link/channel";
+import { browser_world, Channel, type ChannelWorld } from "../link/channel";
 import { type Condition, condition_of } from "../link/condition";
 import { type MonitorApi, monitor_api, type MonitorState, type NewsItem, type TeamPicture, type Trail } from "../link/monitor_api";
 import { NewestDecoder } from "../link/newest";
@@ -34,8 +34,12 @@ const remembered_layers = "tassilo.monitor.layers";
 const usual_step = 1 / 30;
 /// While the past is played, pictures are asked for no more often than they are made, [ms].
 const play_interval_ms = 30;
+/// What was refused, or could not be had, is asked for again after this, [ms].
+const again_ms = 1000;
 /// Numbers that change faster cannot be read, [ms].
 const publish_interval_ms = 200;
+/// Older ones are forgotten.
+const most_news = 500;
 /// Trails grow by what is shown; after a leap they are asked for, [s].
 const longest_stride = 0.25;
 
@@ -70,6 +74,8 @@ export class MonitorSession {
   private last_tick: number | null = null;
   private last_publish = -Infinity;
   private last_news = -Infinity;
+  /// Of the news, all that there are up to this number are known.
+  private news_until = 0;
   private last_shown: number | null = null;
   private others: BroadcastChannel | null = null;
   /// What another window told before the server did.
@@ -78,10 +84,10 @@ export class MonitorSession {
   private readonly past: NewestDecoder<number, TeamPicture | null>;
   private readonly past_trails: NewestDecoder<number, { t: number; trails: Trail[] }>;
 
-  constructor(private readonly api: MonitorApi = monitor_api) {
+  constructor(private readonly api: MonitorApi = monitor_api, world: (path: string) => ChannelWorld = browser_world) {
     this.layers = new Observable(layers_from(memory(remembered_layers)));
-    this.pictures = new RobotPictures(api, browser_world);
-    this.channel = new Channel(browser_world("/ws/team"), (data) => this.feed.message(String(data), performance.now()), () => this.judge());
+    this.pictures = new RobotPictures(api, world);
+    this.channel = new Channel(world("/ws/team"), (data) => this.feed.message(String(data), performance.now()), () => this.judge());
     this.past = new NewestDecoder((t) => this.ask_past(t), (picture) => {
       if (picture !== null && !this.moment.is_live && picture.t !== this.feed.drawn.value?.t) this.feed.show(picture);
     });
@@ -121,6 +127,8 @@ export class MonitorSession {
     void ask();
     setInterval(() => this.judge(), 250);
     addEventListener("online", () => this.retry());
+    // Nobody looks: the radio link has better things to carry, and the robot need not draw.
+    document.addEventListener("visibilitychange", () => this.follow_picture(performance.now()));
   }
 
   retry(): void {
@@ -242,7 +250,8 @@ export class MonitorSession {
     this.judge();
   }
 
-  private tick(now: number): void {
+  /// Once a picture of the screen.
+  tick(now: number): void {
     const elapsed = this.last_tick === null ? 0 : Math.min((now - this.last_tick) / 1000, 1);
     this.last_tick = now;
     const was_live = this.moment.is_live;
@@ -256,15 +265,16 @@ export class MonitorSession {
       this.trails.add(picture);
       if (this.can_look_back && (stride < 0 || stride > longest_stride)) this.past_trails.put(picture.t);
       this.last_shown = picture.t;
-      this.ask_news(picture, now);
     }
+    if (picture !== null) this.ask_news(picture.news, now);
     this.follow_picture(now);
     if (now - this.last_publish >= publish_interval_ms || was_live !== this.moment.is_live) this.publish(now);
   }
 
   private want(now: number): void {
     const { t, playing } = this.moment;
-    if (t === this.wanted_t || (playing && now - this.wanted_at < play_interval_ms)) return;
+    const is_asked = t === this.wanted_t && (this.past_trouble === "" || now - this.wanted_at < again_ms);
+    if (is_asked || (playing && now - this.wanted_at < play_interval_ms)) return;
     [this.wanted_t, this.wanted_at] = [t, now];
     this.past.put(t);
   }
@@ -294,7 +304,8 @@ export class MonitorSession {
     this.time.set({ mode: this.mode, moment: this.current(), span: this.span(now), can_look_back: this.can_look_back, silence: (this.feed.silence(now) ?? 0) / 1000 });
   }
 
-  private async ask_state(): Promise<void> {
+  /// Once a second.
+  async ask_state(): Promise<void> {
     try {
       const state = await this.api.state();
       const before = this.state.value;
@@ -318,15 +329,20 @@ export class MonitorSession {
     this.publish(performance.now());
   }
 
-  private ask_news(picture: TeamPicture, now: number): void {
-    const known = this.news.value[this.news.value.length - 1]?.number ?? 0;
-    if (this.moment.is_live && picture.news < known) return this.news.set([]);   // the server was started anew, and counts anew
-    if (picture.news <= known || now - this.last_news < 1000) return;
+  /// newest  number that there is of them
+  private ask_news(newest: number, now: number): void {
+    if (this.moment.is_live && newest < this.news_until) {   // the server was started anew, and counts anew
+      this.news_until = 0;
+      this.news.set([]);
+    }
+    if (newest <= this.news_until || now - this.last_news < again_ms) return;
     this.last_news = now;
-    void this.api.news(known).then((news) => {
-      const newest = this.news.value[this.news.value.length - 1]?.number ?? 0;
-      this.news.set([...this.news.value, ...news.filter(({ number }) => number > newest)].slice(-500));
-    }, () => { /* asked again with the next picture */ });
+    const after = this.news_until;
+    void this.api.news(after).then((news) => {
+      if (after !== this.news_until) return;
+      this.news_until = Math.max(newest, ...news.map(({ number }) => number));
+      this.news.set([...this.news.value, ...news].slice(-most_news));
+    }, () => { /* asked again */ });
   }
 
   private judge(): void {
