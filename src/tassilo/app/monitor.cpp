@@ -60,14 +60,15 @@ std::optional<double> trail_seconds(const WebRequest& request) {
 }
 
 std::string monitor_json(const char* mode, const std::string& name, const std::string& damage, const FieldModel& field,
-                         std::optional<double> begin, std::optional<double> end) {
+                         std::optional<double> begin, std::optional<double> end, double step) {
   const json value{{"version", TASSILO_VERSION},
                    {"mode", mode},
                    {"name", name},
                    {"damage", damage},
                    {"field", field_json(field)},
                    {"begin", begin ? json(*begin) : json()},
-                   {"end", end ? json(*end) : json()}};
+                   {"end", end ? json(*end) : json()},
+                   {"step", step}};
   return value.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
@@ -261,7 +262,7 @@ WebResponse LiveMonitor::answer(const WebRequest& request) {
   const std::lock_guard lock(mutex_);
   if (request.path == "/api/monitor")
     return ok(monitor_json("live", fmt::format("domain {} on {}", options_.bus.domain, options_.bus.interface), "",
-                           options_.field, history_.begin(), history_.end()));
+                           options_.field, history_.begin(), history_.end(), 0.1));
   if (request.path == "/api/monitor/at") {
     const auto t = number(request, "t");
     if (!t) return needs("t");
@@ -299,7 +300,7 @@ void LogMonitor::run(const std::function<bool()>& is_over) {
 WebResponse LogMonitor::answer(const WebRequest& request) {
   if (request.method != "GET" && request.method != "HEAD") return refusal(405, "the monitor can be read only");
   if (request.path == "/api/monitor")
-    return ok(monitor_json("log", name_, log_.damage(), options_.field, log_.begin(), log_.end()));
+    return ok(monitor_json("log", name_, log_.damage(), options_.field, log_.begin(), log_.end(), 1. / 30));
   const auto t = number(request, "t");
   if (request.path == "/api/monitor/at") {
     if (!t) return needs("t");
