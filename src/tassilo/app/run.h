@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tassilo/app/bus_arguments.h"
 #include "tassilo/app/source_arguments.h"
 #include "tassilo/files/robot_file.h"
 
@@ -16,6 +17,7 @@ class Recorder;
 /// What the command line says of a run.
 struct RunArguments {
   SourceArguments source;
+  BusArguments bus;
   std::string robot, odometry, output, overlay, overlay_step, label_maps, colors, start_pose;
   std::string record;  ///< Folder for recordings; with `run`, one begins at once.
   std::vector<std::string> plugins;

@@ -11,6 +11,8 @@
 #include "tassilo/app/number_list.h"
 #include "tassilo/app/recorder.h"
 #include "tassilo/app/run.h"
+#include "tassilo/app/topic_input.h"
+#include "tassilo/base/error.h"
 
 namespace tassilo {
 std::optional<StartPose> start_pose_from(const std::string& text) {
@@ -29,8 +31,11 @@ std::optional<StartPose> start_pose_from(const std::string& text) {
 void add_run_options(CLI::App& command, RunArguments& arguments) {
   command.add_option("-r,--robot", arguments.robot, "robot.yaml: camera, colors, field and options of one robot");
   arguments.source.add_to(command);
-  command.add_option("--odometry", arguments.odometry,
-                     "odometry.jsonl on the clock of the frames; live: - for standard input, or udp:127.0.0.1:PORT");
+  command.add_option(
+      "--odometry", arguments.odometry,
+      "odometry.jsonl on the clock of the frames; live: - for standard input, udp:127.0.0.1:PORT, or a topic "
+      "of ROS 2 such as topic:/odom");
+  arguments.bus.add_to(command);
   command.add_option("--start-pose", arguments.start_pose,
                      "X,Y,THETA[,SIGMA_XY,SIGMA_THETA] on the field, instead of the robot file's [m, rad]");
   command.add_option("-o,--output", arguments.output, "scenes as JSON Lines; - for standard output");
@@ -59,6 +64,14 @@ void understand(RunArguments& arguments) {
   if (arguments.odometry == "-" && arguments.source.source == "-")
     throw CLI::ValidationError("--odometry", "and --source cannot both be standard input");
   arguments.source.understand();
+  if (is_topic(arguments.odometry)) topic_from("--odometry", arguments.odometry);
+  if (arguments.source.topic || is_topic(arguments.odometry)) {
+    try {
+      arguments.bus.options();
+    } catch (const Error& error) {
+      throw CLI::ValidationError("--bus-interface, --domain, --peer and --multicast", error.what());
+    }
+  }
   arguments.start = start_pose_from(arguments.start_pose);
 }
 
