@@ -58,6 +58,15 @@ std::vector<std::string> published_types(const Bus& bus, std::string_view ros_na
   return types;
 }
 
+BusReliability offered_by_all(const Bus& bus, std::string_view ros_name, std::string_view wire_type) {
+  const std::string name = wire_topic_name(ros_name);
+  const std::vector<BusEndpoint> writers = bus.publications();
+  const bool is_reliable = std::ranges::all_of(writers, [&](const BusEndpoint& writer) {
+    return writer.topic != name || writer.type != wire_type || writer.reliability == BusReliability::reliable;
+  });
+  return is_reliable ? BusReliability::reliable : BusReliability::best_effort;
+}
+
 std::string ros_type_from_wire(const std::string& type) {
   constexpr std::string_view middle = "::msg::dds_::";
   const auto at = type.find(middle);
@@ -69,6 +78,8 @@ std::string ros_type_from_wire(const std::string& type) {
   for (char& c : name) c = c > ' ' && c <= '~' ? c : '?';
   return name;
 }
+
+bool TopicImages::is_compressed() const { return type_ == wire_type_name<ros::CompressedImage>(); }
 
 TopicImages::TopicImages(Bus& bus, TopicImagesOptions options)
     : bus_(bus), options_(std::move(options)), subject_("topic " + options_.topic) {
@@ -93,35 +104,40 @@ std::optional<Frame> TopicImages::take(double now) {
 TopicImageCounts TopicImages::counts() const {
   TopicImageCounts counts = counts_;
   if (reader_) {
-    counts.missed = reader_->lost();
+    counts.missed += reader_->lost();
     counts.refused += reader_->refused();
   }
   return counts;
 }
 
+/// A driver that was started anew may be less reliable.
+void TopicImages::listen_anew() {
+  counts_ = counts();
+  reader_.reset();
+}
+
 void TopicImages::look_for_publisher(double now) {
   const std::vector<std::string> types = published_types(bus_, options_.topic);
-  const auto listen = [&](const std::string& type) {
-    if (std::ranges::find(types, type) == types.end()) return false;
-    BusTopic topic;
-    topic.name = wire_topic_name(options_.topic);
-    topic.type = type;
-    reader_.emplace(bus_.reader(topic));
-    return true;
-  };
-  if (listen(wire_type_name<ros::Image>())) {
-    waits_since_ = now;
-  } else if (listen(wire_type_name<ros::CompressedImage>())) {
-    waits_since_ = now;
-    is_compressed_ = true;
-  } else if (!types.empty()) {
-    throw Error(subject_, "is published as " + ros_type_from_wire(types.front()) +
-                              ", must be sensor_msgs/msg/Image or sensor_msgs/msg/CompressedImage");
+  const auto is_published = [&](const std::string& type) { return std::ranges::find(types, type) != types.end(); };
+  if (types.empty()) return;
+  if (type_.empty()) {
+    for (const std::string& type : {wire_type_name<ros::Image>(), wire_type_name<ros::CompressedImage>()})
+      if (type_.empty() && is_published(type)) type_ = type;
+    if (type_.empty())
+      throw Error(subject_, "is published as " + ros_type_from_wire(types.front()) +
+                                ", must be sensor_msgs/msg/Image or sensor_msgs/msg/CompressedImage");
   }
+  if (!is_published(type_)) return;
+  BusTopic topic;
+  topic.name = wire_topic_name(options_.topic);
+  topic.type = type_;
+  topic.reliability = offered_by_all(bus_, options_.topic, type_);
+  reader_.emplace(bus_.reader(topic));
+  waits_since_ = now;
 }
 
 Frame TopicImages::read(const std::shared_ptr<const std::vector<std::byte>>& bytes, double& t) const {
-  if (is_compressed_) {
+  if (is_compressed()) {
     const auto message = decoded<ros::BorrowedCompressedImage>(*bytes);
     if (!message) throw Error("image", "is no whole sensor_msgs/msg/CompressedImage");
     t = time_of(message->header);
@@ -135,7 +151,7 @@ Frame TopicImages::read(const std::shared_ptr<const std::vector<std::byte>>& byt
 
 std::optional<Frame> TopicImages::frame_of(BusSample sample) {
   const double arrival = 1e-9 * static_cast<double>(sample.arrival_ns);
-  const std::int64_t position = taken_++ + reader_->lost();
+  const std::int64_t position = taken_++ + counts_.missed + reader_->lost();
   try {
     double t = 0;
     Frame frame = read(std::make_shared<const std::vector<std::byte>>(std::move(sample.data)), t);
@@ -163,8 +179,8 @@ void TopicImages::note_first(const Frame& frame) {
   width_ = frame.view.width();
   height_ = frame.view.height();
   range_ = frame.range;
-  description_ = (is_compressed_ ? "sensor_msgs/msg/CompressedImage, " : "sensor_msgs/msg/Image, ") +
-                 std::string(to_string(frame.view.format())) + " " + pixels_text(width_, height_, range_);
+  description_ = ros_type_from_wire(type_) + ", " + std::string(to_string(frame.view.format())) + " " +
+                 pixels_text(width_, height_, range_);
 }
 
 bool TopicImages::is_newer(double t, double now) {
@@ -219,6 +235,7 @@ void TopicImages::nothing_came(double now) {
       }
       break;
     case State::silent:
+      if (reader_ && reader_->writers() == 0) listen_anew();
       // Who was killed is gone only after its lease.
       if (!is_gone_told_ && published_types(bus_, options_.topic).empty()) {
         is_gone_told_ = true;
@@ -231,10 +248,9 @@ void TopicImages::nothing_came(double now) {
 }
 
 std::string TopicImages::why_silent() const {
-  const std::string own = is_compressed_ ? wire_type_name<ros::CompressedImage>() : wire_type_name<ros::Image>();
   const std::vector<std::string> types = published_types(bus_, options_.topic);
   if (types.empty()) return std::string(kGone);
-  if (std::ranges::find(types, own) == types.end())
+  if (std::ranges::find(types, type_) == types.end())
     return "it is now published as " + ros_type_from_wire(types.front()) + "; start again";
   const TopicImageCounts now = counts();
   if (older_since_) return "all that come are older than the last one";

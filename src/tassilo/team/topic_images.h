@@ -23,6 +23,8 @@ std::string wire_topic_name(std::string_view ros_name);
 bool is_ros_topic_name(std::string_view name);
 /// The types under which a topic is published now, as on the wire, each once; also by this bus.
 std::vector<std::string> published_types(const Bus& bus, std::string_view ros_name);
+/// What a reader of this topic can ask for so that every publisher of that type is heard.
+BusReliability offered_by_all(const Bus& bus, std::string_view ros_name, std::string_view wire_type);
 /// "sensor_msgs/msg/Image" for "sensor_msgs::msg::dds_::Image_"; of another text what can be shown.
 std::string ros_type_from_wire(const std::string& type);
 
@@ -45,7 +47,8 @@ struct TopicImageCounts {
 };
 
 /// The newest image of a topic, be it sensor_msgs/Image or sensor_msgs/CompressedImage: whoever publishes first
-/// decides. Best effort, so that every publisher is heard.
+/// decides. So it does of reliability: an image is a thousand packets, one of which is often lost where the receiver's
+/// buffer is smaller, so that what is offered reliably is asked for reliably, and the rest as best effort.
 ///
 /// Pixels stay in the message's own bytes where frame_from says so. Once there was an image, all others must have its
 /// size and range; what is not so, or malformed, is refused and counted, and nobody can end a run with it.
@@ -75,6 +78,8 @@ class TopicImages {
 
  private:
   void look_for_publisher(double now);
+  void listen_anew();
+  bool is_compressed() const;
   std::optional<Frame> frame_of(BusSample sample);
   Frame read(const std::shared_ptr<const std::vector<std::byte>>& bytes, double& t) const;
   bool is_newer(double t, double now);
@@ -87,8 +92,8 @@ class TopicImages {
   Bus& bus_;
   TopicImagesOptions options_;
   std::string subject_;  ///< "topic /camera/image_raw"
+  std::string type_;     ///< On the wire; empty while nobody has published. A bus has one type a topic, so it stays.
   std::optional<BusReader> reader_;
-  bool is_compressed_ = false;
   std::vector<std::string> news_;
   TopicImageCounts counts_;
   std::string description_;  ///< Empty before the first image.

@@ -54,11 +54,11 @@ class Images : public testing::Test {
   }
 
   template <Message M>
-  void publish() {
+  void publish(BusReliability reliability = BusReliability::reliable) {
     BusTopic topic;
     topic.name = wire_topic_name(kTopic);
     topic.type = wire_type_name<M>();
-    topic.reliability = BusReliability::reliable;
+    topic.reliability = reliability;
     topic.depth = 10;
     driver_.emplace(driver_bus_.writer(topic));
   }
@@ -121,6 +121,42 @@ TEST_F(Images, ComeWithStampAndPosition) {
   EXPECT_EQ(images.description(), "sensor_msgs/msg/Image, uyvy422 8x4 px, limited range");
   EXPECT_THAT(images.news(), IsEmpty());
   EXPECT_EQ(images.counts().refused, 0);
+}
+
+TEST_F(Images, OfADriverThatComesBackAndOffersLessAreHeard) {
+  publish<ros::Image>(BusReliability::reliable);
+  TopicImages images = listen();
+  meet(images);
+  ASSERT_TRUE(pass(images, image_at(10), 0));
+  driver_.reset();
+  publish<ros::Image>(BusReliability::best_effort);
+  meet(images, 2);
+  const auto frame = pass(images, image_at(12), 3);
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->t, 12);
+  EXPECT_EQ(frame->index, 1);
+}
+
+TEST_F(Images, OfADriverThatComesBackWithAnotherTypeAreMissed) {
+  publish<ros::Image>();
+  TopicImages images = listen();
+  meet(images);
+  ASSERT_TRUE(pass(images, image_at(10), 0));
+  driver_.reset();
+  Bus other{options()};
+  BusTopic topic;
+  topic.name = wire_topic_name(kTopic);
+  topic.type = wire_type_name<ros::CompressedImage>();
+  const BusWriter writer = other.writer(topic);
+  const auto end = std::chrono::steady_clock::now() + 20s;
+  while (published_types(bus_, kTopic) != std::vector{topic.type} && std::chrono::steady_clock::now() < end)
+    bus_.wait(20ms);
+  EXPECT_FALSE(images.take(2));
+  EXPECT_THAT(images.news(),
+              ElementsAre(HasSubstr("it is now published as sensor_msgs/msg/CompressedImage; start again")));
+  EXPECT_FALSE(images.take(3));
+  EXPECT_FALSE(images.take(4));
+  EXPECT_THAT(images.news(), IsEmpty());
 }
 
 TEST_F(Images, NewestWinsAndOthersAreCounted) {
