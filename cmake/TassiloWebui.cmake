@@ -15,11 +15,11 @@ elseif(NOT TASSILO_WEBUI)
   set(webui_reason "TASSILO_WEBUI is off")
 endif()
 
-set(TASSILO_WEBUI_DIR ${PROJECT_BINARY_DIR}/webui)   # index.html and what it needs
+set(TASSILO_WEBUI_DIR ${PROJECT_BINARY_DIR}/webui)   # index.html, monitor.html and what they need
 set(webui_source ${PROJECT_SOURCE_DIR}/webui)
 if(NOT webui_reason)
   file(GLOB_RECURSE webui_files CONFIGURE_DEPENDS ${webui_source}/src/* ${webui_source}/public/*)
-  foreach(file index.html package.json package-lock.json tsconfig.json vite.config.ts)
+  foreach(file index.html monitor.html package.json package-lock.json tsconfig.json vite.config.ts)
     list(APPEND webui_files ${webui_source}/${file})
   endforeach()
   add_custom_command(OUTPUT ${TASSILO_WEBUI_DIR}/index.html
@@ -33,7 +33,7 @@ if(NOT webui_reason)
 endif()
 
 if(TASSILO_TESTS)
-  foreach(test unit browser colors calibration)
+  foreach(test unit browser colors calibration monitor)
     if(webui_reason)
       add_test(NAME webui.${test} COMMAND ${CMAKE_COMMAND} -E echo "skipped: ${webui_reason}")
       set_tests_properties(webui.${test} PROPERTIES SKIP_REGULAR_EXPRESSION "^skipped:")
@@ -47,7 +47,9 @@ if(TASSILO_TESTS)
       ${NODE_EXECUTABLE} mock/server.mjs --port 0 --pages ${TASSILO_WEBUI_DIR} WORKING_DIRECTORY ${webui_source})
     add_test(NAME webui.calibration COMMAND ${NODE_EXECUTABLE} e2e/calibration.mjs --screenshots ${PROJECT_BINARY_DIR}/webui_screenshots --
       ${NODE_EXECUTABLE} mock/server.mjs --port 0 --pages ${TASSILO_WEBUI_DIR} WORKING_DIRECTORY ${webui_source})
+    add_test(NAME webui.monitor COMMAND ${NODE_EXECUTABLE} e2e/monitor.mjs --screenshots ${PROJECT_BINARY_DIR}/webui_screenshots --
+      ${NODE_EXECUTABLE} mock/monitor.mjs --port 0 --pages ${TASSILO_WEBUI_DIR} WORKING_DIRECTORY ${webui_source})
     # A browser is several processes; beside other tests a machine of two cores shows it all too slowly.
-    set_tests_properties(webui.browser webui.colors webui.calibration PROPERTIES SKIP_RETURN_CODE 77 PROCESSORS 2 TIMEOUT 240)
+    set_tests_properties(webui.browser webui.colors webui.calibration webui.monitor PROPERTIES SKIP_RETURN_CODE 77 PROCESSORS 2 TIMEOUT 240)
   endif()
 endif()

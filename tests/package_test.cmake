@@ -22,7 +22,7 @@ set(toolchain -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_CXX_COMPI
 
 if(MODE STREQUAL core_only)
   set(hidden)
-  foreach(package PkgConfig Ceres apriltag yaml-cpp PNG JPEG nlohmann_json CLI11 fmt spdlog OpenCV CycloneDDS benchmark GTest)
+  foreach(package PkgConfig Ceres apriltag yaml-cpp PNG JPEG ZLIB nlohmann_json CLI11 fmt spdlog OpenCV CycloneDDS benchmark GTest)
     list(APPEND hidden -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
   endforeach()
   run("configure core" ${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/build ${toolchain} -DCMAKE_BUILD_TYPE=Release

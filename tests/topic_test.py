@@ -241,9 +241,10 @@ class Topic(ProgramTest):
         self.refuses("run", "--source", IMAGES, "--size", "640x480", says="are what the images of a topic say")
         self.refuses("run", "--source", IMAGES, "--exposure", "auto", says="are the driver's")
         self.refuses("run", "--source", IMAGES, "--domain", 233, says="--domain")
-        self.refuses("run", "--source", IMAGES, "--multicast", says="must be off on loopback")
-        self.refuses("run", "--source", IMAGES, says="ROS_DOMAIN_ID: is many, must be a number in 0..232", env=os.environ | {"ROS_DOMAIN_ID": "many"})
-        self.fails("run", "--source", IMAGES, "--colors", "div.yaml", "--bus-interface", "nowhere0", says="bus: cannot enter domain")
+        table = ("--source", IMAGES, "--colors", "div.yaml")
+        self.fails("run", *table, "--multicast", says="bus.multicast: is on, must be off on loopback")
+        self.fails("run", *table, says="ROS_DOMAIN_ID: is 'many', must be a whole number", env=os.environ | {"ROS_DOMAIN_ID": "many"})
+        self.fails("run", *table, "--interface", "nowhere0", says="bus: cannot enter domain")
 
 
 if __name__ == "__main__":

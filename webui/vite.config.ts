@@ -20,6 +20,7 @@ export default defineConfig({
     assetsInlineLimit: 0,
     modulePreload: { polyfill: false },
     reportCompressedSize: false,
+    rollupOptions: { input: ["index.html", "monitor.html"] },   // of `tassilo serve`, of `tassilo monitor`
   },
   server: {
     host: "127.0.0.1",

@@ -5,21 +5,22 @@
 #include <string>
 #include <vector>
 
+#include "tassilo/files/robot_file.h"
 #include "tassilo/team/bus.h"
 
 namespace tassilo {
 
-/// What the command line says of the bus, and ROS 2's own variable of the environment.
+/// What the command line says of the bus.
 struct BusArguments {
-  std::string interface = "lo";
-  std::optional<int> domain;  ///< Nothing: ROS_DOMAIN_ID, else 0.
+  std::string interface;
+  std::optional<int> domain;
   std::vector<std::string> peers;
   bool multicast = false;
 
-  /// Adds the options, which all go together.
   void add_to(CLI::App& command);
-  /// With room for an image without compression. Throws Error when one of them cannot be.
-  BusOptions options() const;
+  /// Where the command line is silent, as the robot file says; the domain then as ROS_DOMAIN_ID says.
+  /// Throws Error for what is out of range.
+  BusOptions options(const BusSettings& robot = {}) const;
 };
 
 }  // namespace tassilo

@@ -4,15 +4,15 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 
+#include "tassilo/app/annotated_picture.h"
 #include "tassilo/app/calibration_requests.h"
+#include "tassilo/app/field_json.h"
 #include "tassilo/app/frame_bytes.h"
 #include "tassilo/app/recording_api.h"
 #include "tassilo/app/training_requests.h"
 #include "tassilo/base/error.h"
-#include "tassilo/files/jpeg.h"
 #include "tassilo/files/json.h"
 #include "tassilo/files/scene_json.h"
-#include "tassilo/overlay/overlay.h"
 
 namespace tassilo {
 namespace {
@@ -58,23 +58,6 @@ std::string stages_json(const Configuration& configuration, const VisionChanges&
                       {"options", options_json(stage.options)}});
   }
   return stages.dump();
-}
-
-/// With the keys of a field file, as far as a view of the field wants them.
-json field_json(const FieldModel& field) {
-  json areas = json::array(), goals = json::array();
-  for (const FieldModel::Area& area : field.areas) areas.push_back({{"depth", area.depth}, {"width", area.width}});
-  for (const FieldModel::Goal& goal : field.goals)
-    goals.push_back({{"side", goal.side == GoalSide::plus_x ? "+x" : "-x"},
-                     {"color", std::string(to_string(goal.color))},
-                     {"width", goal.width},
-                     {"depth", goal.depth}});
-  return {{"length", field.length},
-          {"width", field.width},
-          {"circle_radius", field.circle_radius},
-          {"halfway_line", field.halfway_line},
-          {"areas", std::move(areas)},
-          {"goals", std::move(goals)}};
 }
 
 /// Without what says the same as the robot file, or as the default where that says nothing.
@@ -253,19 +236,11 @@ void LiveView::publish(const Snapshot& snapshot) {
     server_.publish(kFrame, bytes, WebServer::Message::binary);
   }
   if (snapshot.scenery)
-    server_.publish(kPicture, std::make_shared<const std::string>(picture_of(snapshot.frame, *snapshot.scenery)),
+    server_.publish(kPicture,
+                    std::make_shared<const std::string>(
+                        annotated_jpeg(snapshot.frame, snapshot.scenery->scene, snapshot.scenery->surface,
+                                       snapshot.scenery->configuration->vision.optics())),
                     WebServer::Message::binary);
-}
-
-std::string LiveView::picture_of(const Frame& frame, const Scenery& scenery) {
-  OverlayOptions options;
-  const Optics* const optics = scenery.configuration->vision.optics();
-  options.camera = optics != nullptr ? &optics->camera : nullptr;
-  options.surface = &scenery.surface;
-  const Picture picture = draw_overlay(frame.view, frame.range, scenery.scene, options);
-  constexpr int quality = 80;
-  return encode_jpeg(picture.pixels, picture.width, picture.height, quality,
-                     "frame " + std::to_string(scenery.scene.frame));
 }
 
 /// That was sent a moment ago, or the next one; null when none comes.

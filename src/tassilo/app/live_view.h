@@ -111,7 +111,6 @@ class LiveView {
   std::string state_json() const;
   void draw_pictures();
   void publish(const Snapshot& snapshot);
-  static std::string picture_of(const Frame& frame, const Scenery& scenery);
 
   const std::string robot_file_;
   const std::filesystem::path samples_;

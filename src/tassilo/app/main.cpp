@@ -51,6 +51,8 @@ int main(int argc, char** argv) {
 
   const Command run = add_run(program);
   const Command serve = add_serve(program);
+  const Command monitor = add_monitor(program);
+  const Command replay = add_replay(program);
   auto* train = program.add_subcommand("train", "train what the vision needs");
   train->require_subcommand(1);
   const Command train_colors = add_train_colors(*train);
@@ -61,6 +63,8 @@ int main(int argc, char** argv) {
   const auto command = [&] {
     if (program.got_subcommand("run")) return run();
     if (program.got_subcommand("serve")) return serve();
+    if (program.got_subcommand("monitor")) return monitor();
+    if (program.got_subcommand("replay")) return replay();
     if (program.got_subcommand("train")) return train_colors();
     if (program.got_subcommand("calibrate")) return calibrate();
     if (program.got_subcommand("eval")) return eval();

@@ -1,13 +1,11 @@
 #include "tassilo/app/run.h"
 
 #include <fmt/core.h>
-#include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <memory>
@@ -20,6 +18,8 @@
 #include "tassilo/app/recorder.h"
 #include "tassilo/app/run_sinks.h"
 #include "tassilo/app/run_summary.h"
+#include "tassilo/app/signals.h"
+#include "tassilo/app/team_sender.h"
 #include "tassilo/app/topic_input.h"
 #include "tassilo/app/written_files.h"
 #include "tassilo/base/error.h"
@@ -27,19 +27,6 @@
 
 namespace tassilo {
 namespace {
-
-std::atomic<bool> interrupted = false;
-
-void on_signal(int) { interrupted = true; }
-
-/// Ctrl-C and a friendly kill end the run after the frame at work; a second one ends the program at once.
-void end_cleanly_on_signals() {
-  struct sigaction action {};
-  action.sa_handler = on_signal;
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-}
 
 /// Throws Error when a file that is read would be overwritten.
 void check_paths(const RunArguments& arguments, std::vector<NamedFile> read) {
@@ -50,8 +37,9 @@ void check_paths(const RunArguments& arguments, std::vector<NamedFile> read) {
   const std::string extension = source.extension().string();
   if (extension == ".png" || extension == ".jpg" || extension == ".jpeg")
     read.push_back({"folder of --source", source.has_parent_path() ? source.parent_path().string() : "."});
-  check_written_files(read, std::array<NamedFile, 3>{{{"--output", arguments.output},
+  check_written_files(read, std::array<NamedFile, 4>{{{"--output", arguments.output},
                                                       {"--overlay", arguments.overlay},
+                                                      {"--record", arguments.log},
                                                       {"--label-maps", arguments.label_maps}}});
 }
 
@@ -63,7 +51,7 @@ FrameSource open_source_of(const SourceOptions& options) {
     const std::string extension = std::filesystem::path(options.location).extension().string();
     const bool may_be_raw =
         options.location == "-" || extension == ".yuv" || extension == ".raw" || extension == ".nv12";
-    if (options.raw || !may_be_raw || interrupted) throw;
+    if (options.raw || !may_be_raw || is_interrupted()) throw;
     throw Error(error.what(), "raw frames need --format, --size, --range and --fps");
   }
 }
@@ -91,13 +79,25 @@ std::string recording_summary(const RecordingState& recording) {
   return text + "\n";
 }
 
-/// Null where nothing comes from ROS 2.
-std::unique_ptr<TopicInput> topic_input(const RunArguments& arguments) {
+InputTopics input_topics(const RunArguments& arguments) {
   InputTopics topics;
   topics.images = arguments.source.topic.value_or("");
   topics.camera_info = arguments.source.camera_info;
   if (is_topic(arguments.odometry)) topics.odometry = topic_of(arguments.odometry);
-  return topics.empty() ? nullptr : std::make_unique<TopicInput>(arguments.bus.options(), topics);
+  return topics;
+}
+
+/// The same for all that a run has on the bus: what is said and what is listened to.
+BusOptions bus_options(const RunArguments& arguments, const RobotFile& robot) {
+  BusOptions options = arguments.bus.options(robot.bus);
+  if (arguments.source.topic) options.max_bytes = kMostImageBytes;
+  return options;
+}
+
+/// Null where nothing comes from ROS 2.
+std::unique_ptr<TopicInput> topic_input(const RunArguments& arguments, const RobotFile& robot) {
+  const InputTopics topics = input_topics(arguments);
+  return topics.empty() ? nullptr : std::make_unique<TopicInput>(bus_options(arguments, robot), topics);
 }
 
 /// Nothing where odometry is no topic.
@@ -120,7 +120,7 @@ class Run {
         // Nothing but scene lines may go where scene lines go.
         report_(arguments.output == "-" ? stderr : stdout),
         configuration_(load(live != nullptr ? live->changes() : VisionChanges{})),
-        topics_(topic_input(arguments)),
+        topics_(topic_input(arguments, configuration_->setup.robot)),
         odometry_(arguments.odometry, loses_nothing(arguments.source), odometry_of(topics_.get(), arguments)) {
     check_paths(arguments_, configuration_->setup.read);
     workspace_.watch_boundary = !arguments_.overlay_step.empty();
@@ -138,13 +138,14 @@ class Run {
     try {
       open();
     } catch (const Error&) {
-      if (!interrupted) throw;
+      if (!is_interrupted()) throw;
       tell("ended by a signal before the first frame\n");
       return;
     }
     tell(fmt::format("{}: {}\n", name(), info_.description));
     if (is_live()) std::fflush(report_);  // somebody watches
     RunSinks sinks(arguments_);
+    begin_telling();
     if (recorder_ != nullptr && !arguments_.record.empty()) recorder_->start();
     progress_.emplace(!arguments_.quiet && live_ == nullptr, info_.frame_count);
     const auto load_checked = [this](const VisionChanges& changes) { return checked(load(changes)); };
@@ -170,13 +171,19 @@ class Run {
     }
     const double seconds = ms_between(begin, Clock::now()) / 1000;
     if (recorder_ != nullptr) recorder_->finish();
+    try {
+      if (sender_) sender_->finish();
+    } catch (const Error& error) {
+      if (!damage) damage = error;
+    }
     progress_->finish();
     tell_of_recording();
     if (odometry_.get() != nullptr) summary_.set_odometry(odometry_.get()->counts());
     tell(summary_.text(
         seconds, camera_summary(source_->camera_counts()) + (topics_ ? topics_->summary() : "") + odometry_.summary()));
-    if (interrupted) tell("\nended by a signal; all lines are complete\n");
+    if (is_interrupted()) tell("\nended by a signal; all lines are complete\n");
     tell(sinks.names());
+    if (sender_) tell(sender_->summary());
     if (recorder_ != nullptr && !arguments_.record.empty()) tell(recording_summary(recorder_->state()));
     if (damage) throw *damage;
     // What was asked for at the start and is not whole is a failure; a button's is told where it was pressed.
@@ -191,8 +198,8 @@ class Run {
   bool plays_again() const {
     std::error_code ignored;
     const std::filesystem::path path = arguments_.source.source;
-    return live_ != nullptr && done_ > 0 && !interrupted && arguments_.output.empty() && arguments_.overlay.empty() &&
-           arguments_.label_maps.empty() &&
+    return live_ != nullptr && done_ > 0 && !is_interrupted() && arguments_.output.empty() &&
+           arguments_.overlay.empty() && arguments_.label_maps.empty() &&
            (std::filesystem::is_regular_file(path, ignored) || std::filesystem::is_directory(path, ignored));
   }
   bool is_live() const { return arguments_.source.camera || arguments_.source.topic; }
@@ -240,7 +247,7 @@ class Run {
     options.images_range = configuration_->setup.vision.colors.range;
     options.fps = arguments_.source.fps;
     options.threads = arguments_.threads;
-    options.interrupted = [] { return interrupted.load(); };
+    options.interrupted = is_interrupted;
     if (arguments_.source.camera) options.camera = *arguments_.source.camera;
     // Frames that fit the camera file need no --size.
     if (const auto& camera = configuration_->setup.vision.camera; camera && arguments_.source.size.empty()) {
@@ -269,17 +276,37 @@ class Run {
     workspace_.history.tracks.add(start->t, start->tracks);
   }
 
+  void begin_telling() {
+    if (!arguments_.says_on_bus && arguments_.log.empty()) return;
+    const RobotFile& robot = configuration_->setup.robot;
+    TeamSenderOptions options;
+    options.robot = arguments_.robot_id.value_or(robot.id);
+    if (arguments_.says_on_bus) options.bus = bus_options(arguments_, robot);
+    if (const auto bytes = robot.bus.bytes_per_second) options.budget.bytes_per_second = *bytes;
+    if (const auto rate = robot.bus.picture_rate) options.budget.picture_rate = *rate;
+    options.budget.rates = robot.bus.rates;
+    options.reliable = robot.bus.reliable;
+    options.log = arguments_.log;
+    options.waits = loses_nothing(arguments_.source) && !arguments_.says_on_bus;
+    sender_.emplace(options);
+  }
+
+  /// Somebody looks or listens: a file plays as it was recorded.
+  bool plays_in_real_time() const { return (live_ != nullptr || arguments_.says_on_bus) && !is_live(); }
+
   void see_all(RunSinks& sinks) {
     std::optional<double> last_t;
+    bool is_first = true;
     // Played again: the last frame is seen as long as the one before it, also by those who look at single images.
     auto due = Clock::now() + last_step_;
-    while (!interrupted) {
+    while (!is_interrupted()) {
       const auto before = Clock::now();
       const std::optional<Frame> frame = source_->next();
       if (!frame) return;
       if (read_++ % arguments_.every != 0) continue;
       const double decode_ms = ms_between(before, Clock::now());
-      if (live_ != nullptr && !is_live()) {
+      if (sender_ && std::exchange(is_first, false)) sender_->begin(frame->t);
+      if (plays_in_real_time()) {
         // In real time, but a gap in the recording does not stop it for long.
         constexpr double longest_gap = 1;  // [s]
         const double step = last_t ? std::clamp(frame->t - *last_t, 0., longest_gap) : 0;
@@ -305,7 +332,7 @@ class Run {
 
   static void wait_until(Clock::time_point then) {
     constexpr auto patience = std::chrono::milliseconds(50);  // until a signal is noticed
-    while (!interrupted && Clock::now() < then)
+    while (!is_interrupted() && Clock::now() < then)
       std::this_thread::sleep_for(std::min<Clock::duration>(patience, then - Clock::now()));
   }
 
@@ -313,13 +340,15 @@ class Run {
     RecycledString changes = taken_over(frame.index);
     const Vision& vision = configuration_->vision;
     vision.check_frames(name_of(frame, name()), frame.view.width(), frame.view.height(), frame.range);
-    odometry_.update(frame, [] { return interrupted.load(); });
+    odometry_.update(frame, is_interrupted);
     if (topics_) topics_->check_camera(configuration_->setup.vision.camera);
     const Odometry* const odometry = odometry_.get();
     if (recorder_ != nullptr) recorder_->before(frame, configuration_, workspace_.history, odometry_);
     Scene scene = seen_by(vision, frame, odometry);
+    std::optional<double> latency_s;
     if (const std::optional<double> now = source_->now()) {
-      const double latency_ms = 1000 * (*now - frame.t);
+      latency_s = *now - frame.t;
+      const double latency_ms = 1000 * *latency_s;
       summary_.add_latency(latency_ms);
       if (live_ != nullptr) live_->add_latency(latency_ms);
     }
@@ -333,6 +362,7 @@ class Run {
     sinks.write(frame, scene, workspace_, vision.optics());
     if (live_ != nullptr) live_->show(frame, scene, workspace_, configuration_);
     if (recorder_ != nullptr) recorder_->after(frame, scene, odometry_);
+    if (sender_) sender_->say(frame, scene, workspace_, configuration_, odometry, latency_s);
     tell_of_recording();
     watch_mount(scene);
     summary_.add(scene);
@@ -414,6 +444,7 @@ class Run {
   std::shared_ptr<const Configuration> drift_of_;  ///< Whose field `drift_target_` is.
   std::optional<FieldTarget> drift_target_;
   std::optional<Progress> progress_;
+  std::optional<TeamSender> sender_;
   bool has_chosen_ = false;  ///< Taken over from a browser since the watch last had news.
   std::int64_t read_ = 0, done_ = 0;
   Clock::duration last_step_{};              ///< From frame to frame of a file that is played in real time.

@@ -17,9 +17,12 @@ class Recorder;
 /// What the command line says of a run.
 struct RunArguments {
   SourceArguments source;
-  BusArguments bus;
   std::string robot, odometry, output, overlay, overlay_step, label_maps, colors, start_pose;
   std::string record;  ///< Folder for recordings; with `run`, one begins at once.
+  std::string log;     ///< MCAP file of what is told.
+  bool says_on_bus = false;
+  BusArguments bus;
+  std::optional<int> robot_id;  ///< Instead of the robot file's.
   std::vector<std::string> plugins;
   std::optional<StartPose> start;  ///< What `start_pose` says.
   int every = 1;

@@ -1,9 +1,11 @@
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <numbers>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tassilo/app/boundary_steps.h"
@@ -12,7 +14,6 @@
 #include "tassilo/app/recorder.h"
 #include "tassilo/app/run.h"
 #include "tassilo/app/topic_input.h"
-#include "tassilo/base/error.h"
 
 namespace tassilo {
 std::optional<StartPose> start_pose_from(const std::string& text) {
@@ -35,7 +36,6 @@ void add_run_options(CLI::App& command, RunArguments& arguments) {
       "--odometry", arguments.odometry,
       "odometry.jsonl on the clock of the frames; live: - for standard input, udp:127.0.0.1:PORT, or a topic "
       "of ROS 2 such as topic:/odom");
-  arguments.bus.add_to(command);
   command.add_option("--start-pose", arguments.start_pose,
                      "X,Y,THETA[,SIGMA_XY,SIGMA_THETA] on the field, instead of the robot file's [m, rad]");
   command.add_option("-o,--output", arguments.output, "scenes as JSON Lines; - for standard output");
@@ -47,6 +47,11 @@ void add_run_options(CLI::App& command, RunArguments& arguments) {
   command.add_option("--label-maps", arguments.label_maps, "folder for color classes 0..8 as NNNN.png");
   command.add_option("--colors", arguments.colors, "color table, instead of the robot file's");
   add_plugin_option(command, arguments.plugins);
+  command.add_flag("--bus", arguments.says_on_bus,
+                   "tell the team what is seen, as topics /robot<id>/... of ROS 2; files then play in real time");
+  command.add_option("--robot-id", arguments.robot_id, "number on the bus and in logs, instead of the robot file's")
+      ->check(CLI::Range(0, 255));
+  arguments.bus.add_to(command);
   command.add_option("--threads", arguments.threads, "for decoding and encoding; seeing itself takes one core")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
@@ -65,13 +70,6 @@ void understand(RunArguments& arguments) {
     throw CLI::ValidationError("--odometry", "and --source cannot both be standard input");
   arguments.source.understand();
   if (is_topic(arguments.odometry)) topic_from("--odometry", arguments.odometry);
-  if (arguments.source.topic || is_topic(arguments.odometry)) {
-    try {
-      arguments.bus.options();
-    } catch (const Error& error) {
-      throw CLI::ValidationError("--bus-interface, --domain, --peer and --multicast", error.what());
-    }
-  }
   arguments.start = start_pose_from(arguments.start_pose);
 }
 
@@ -84,8 +82,13 @@ Command add_run(CLI::App& program) {
                     "take changes of the robot file, and of the files it names, over between two frames");
   command->add_option("--record", arguments->record,
                       "record into a new folder below this one: lossless video, odometry, scenes and configuration, "
-                      "from which the same scenes come again");
-  command->callback([arguments] { understand(*arguments); });
+                      "from which the same scenes come again; or, NAME.mcap, into a log of the messages that --bus "
+                      "sends, with annotated pictures");
+  command->callback([arguments] {
+    understand(*arguments);
+    if (std::filesystem::path(arguments->record).extension() == ".mcap")
+      arguments->log = std::exchange(arguments->record, "");
+  });
   return [arguments] {
     if (arguments->record.empty()) return run(*arguments, nullptr, nullptr);
     Recorder recorder(arguments->record, loses_nothing(arguments->source));

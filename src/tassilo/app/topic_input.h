@@ -17,6 +17,9 @@
 
 namespace tassilo {
 
+/// Room for images without compression: 1920 x 1080 pixels of RGB are 6 MB. [B]
+inline constexpr int kMostImageBytes = 16 << 20;
+
 /// Whether a location names a topic: begins with `topic:`.
 bool is_topic(const std::string& location);
 /// "/camera/image_raw" of `topic:/camera/image_raw`.

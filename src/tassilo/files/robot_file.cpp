@@ -40,8 +40,42 @@ void read_identity(const Value& value, RobotFile& robot) {
   if (const auto team = map.find("team")) robot.team = team->choice(kTeams) == 0 ? Team::cyan : Team::magenta;
 }
 
+BusSettings bus_of(const Value& value) {
+  const Map map =
+      value.map({"domain", "interface", "peers", "multicast", "reliable", "bytes_per_second", "picture_rate", "rates"});
+  BusSettings bus;
+  if (const auto domain = map.find("domain")) bus.domain = static_cast<int>(domain->integer(0, 232));
+  if (const auto interface = map.find("interface")) bus.interface = interface->string();
+  if (const auto peers = map.find("peers"))
+    for (const Value& peer : peers->list()) bus.peers.push_back(peer.string());
+  if (const auto multicast = map.find("multicast")) bus.multicast = multicast->boolean();
+  if (const auto reliable = map.find("reliable")) bus.reliable = reliable->boolean();
+  if (const auto bytes = map.find("bytes_per_second")) bus.bytes_per_second = bytes->number(1000, 1e9);
+  if (const auto rate = map.find("picture_rate")) bus.picture_rate = rate->number(0, 100);
+  if (const auto rates = map.find("rates"))
+    for (const auto& [topic, rate] : rates->any_map().entries()) bus.rates.emplace(topic, rate.number(0.01, 1000));
+  return bus;
+}
+
+std::string bus_yaml(const BusSettings& bus) {
+  std::ostringstream out;
+  out << "bus:\n";
+  if (bus.domain) out << "  domain: " << *bus.domain << "\n";
+  if (bus.interface) out << "  interface: " << yaml_text(*bus.interface) << "\n";
+  if (!bus.peers.empty()) out << "  peers:\n";
+  for (const std::string& peer : bus.peers) out << "    - " << yaml_text(peer) << "\n";
+  if (bus.multicast) out << "  multicast: true\n";
+  if (bus.reliable) out << "  reliable: true\n";
+  if (bus.bytes_per_second) out << "  bytes_per_second: " << exact_number(*bus.bytes_per_second) << "\n";
+  if (bus.picture_rate) out << "  picture_rate: " << exact_number(*bus.picture_rate) << "\n";
+  if (!bus.rates.empty()) out << "  rates:\n";
+  for (const auto& [topic, rate] : bus.rates) out << "    " << yaml_text(topic) << ": " << exact_number(rate) << "\n";
+  return out.str();
+}
+
 RobotFile robot_of(const Value& root, const fs::path& folder) {
-  const Map map = root.map({"robot", "camera", "colors", "field", "start_pose", "start_state", "plugins", "vision"});
+  const Map map =
+      root.map({"robot", "camera", "colors", "field", "start_pose", "start_state", "bus", "plugins", "vision"});
   RobotFile robot;
   if (const auto value = map.find("robot")) read_identity(*value, robot);
   if (const auto value = map.find("camera")) robot.camera = value->path(folder);
@@ -50,6 +84,7 @@ RobotFile robot_of(const Value& root, const fs::path& folder) {
     robot.field = is_field_path(value->string()) ? value->path(folder).string() : value->string();
   if (const auto value = map.find("start_pose")) robot.start_pose = start_pose_of(*value);
   if (const auto value = map.find("start_state")) robot.start_state = value->path(folder);
+  if (const auto value = map.find("bus"); value && !value->is_null()) robot.bus = bus_of(*value);
   if (const auto value = map.find("plugins"); value && !value->is_null())
     for (const Value& plugin : value->list()) robot.plugins.push_back(plugin.path(folder));
   if (const auto value = map.find("vision"); value && !value->is_null())  // all commented out is as good as missing
@@ -81,6 +116,7 @@ std::string robot_yaml(const RobotFile& robot, const fs::path& folder) {
         << ", theta: " << exact_number(pose->theta) << ", sigma_xy: " << exact_number(pose->sigma_xy)
         << ", sigma_theta: " << exact_number(pose->sigma_theta) << "}\n";
   if (robot.start_state) out << "start_state: " << yaml_path(*robot.start_state, folder) << "\n";
+  if (robot.bus != BusSettings{}) out << bus_yaml(robot.bus);
   if (!robot.plugins.empty()) {
     out << "plugins:\n";
     for (const fs::path& plugin : robot.plugins) out << "  - " << yaml_path(plugin, folder) << "\n";

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,6 +20,18 @@ struct StartPose {
   double sigma_xy = 0.1, sigma_theta = 0.1;  ///< [m, rad], > 0
 };
 
+/// How a robot speaks on the team bus; what is missing is as the bus's own options have it.
+struct BusSettings {
+  std::optional<int> domain;             ///< 0..232
+  std::optional<std::string> interface;  ///< Name or address.
+  std::vector<std::string> peers;
+  bool multicast = false;
+  bool reliable = false;  ///< What is lost is sent again.
+  std::optional<double> bytes_per_second, picture_rate;
+  std::map<std::string, double, std::less<>> rates;  ///< By topic. [1/s], > 0
+  friend bool operator==(const BusSettings&, const BusSettings&) = default;
+};
+
 /// What robot.yaml says; every key is optional. Paths are resolved: relative ones are relative to the file.
 struct RobotFile {
   int id = 0;                                   ///< 0..255
@@ -27,7 +41,8 @@ struct RobotFile {
   std::optional<std::string> field;  ///< A shipped name or a resolved path, as read_field takes it.
   std::optional<StartPose> start_pose;
   std::optional<std::filesystem::path> start_state;  ///< What was known before the first frame; see start_state_file.h.
-  std::vector<std::filesystem::path> plugins;        ///< Shared libraries that bring alternatives for stages.
+  BusSettings bus;
+  std::vector<std::filesystem::path> plugins;  ///< Shared libraries that bring alternatives for stages.
   /// The keys below `vision:` in their order, for whoever knows what they mean.
   std::vector<std::pair<std::string, Setting>> vision;
 };

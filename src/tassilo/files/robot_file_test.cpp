@@ -24,7 +24,10 @@ vision:
 TEST(RobotFile, WrittenRobotsReadBackTheSame) {
   const std::string quoted = "vision: {a: \"12\", b: 1e-3, c: skeleton, d: true, e: \"x: #y\", f: -0.5}\n";
   for (const std::string& text : {kFull, std::string("{}"), std::string("robot: {id: 7}\nfield: fields/own.yaml\n"),
-                                  "start_state: state.yaml\nplugins: [a.so, ../b c.so]\n" + quoted}) {
+                                  "start_state: state.yaml\nplugins: [a.so, ../b c.so]\n" + quoted,
+                                  std::string("bus: {domain: 7, interface: wlan0, peers: [10.0.0.2, bench], multicast: "
+                                              "true, reliable: true, bytes_per_second: 1e5, picture_rate: 2.5, rates: "
+                                              "{pose: 10, image/compressed: .5}}\n")}) {
     SCOPED_TRACE(text);
     const RobotFile robot = robot_from_yaml(text, "robots/r3/robot.yaml");
     const RobotFile read = robot_from_yaml(robot_yaml(robot, "robots/r3"), "robots/r3/robot.yaml");
@@ -37,6 +40,7 @@ TEST(RobotFile, WrittenRobotsReadBackTheSame) {
     EXPECT_EQ(normal(read.colors), normal(robot.colors));
     EXPECT_EQ(normal(read.start_state), normal(robot.start_state));
     EXPECT_EQ(read.field, robot.field);
+    EXPECT_EQ(read.bus, robot.bus);
     ASSERT_EQ(read.start_pose.has_value(), robot.start_pose.has_value());
     if (robot.start_pose) {
       EXPECT_EQ(read.start_pose->theta, robot.start_pose->theta);
@@ -99,10 +103,10 @@ TEST(RobotFile, MalformedFilesAreRefused) {
   };
   const Case cases[] = {
       {"colors:", "colours:",
-       "r:3:1: unknown key 'colours', must be robot, camera, colors, field, start_pose, start_state, plugins or "
-       "vision; did you "
-       "mean "
-       "colors?"},
+       "r:3:1: unknown key 'colours', must be robot, camera, colors, field, start_pose, start_state, bus, "
+       "plugins or vision; did you mean colors?"},
+      {"camera: camera.yaml", "bus: {domain: 233}", "r:2:15: bus.domain is '233', must be >= 0 and <= 232"},
+      {"camera: camera.yaml", "bus: {rates: {pose: 0}}", "r:2:21: bus.rates.pose is '0', must be >= 0.01 and <= 1000"},
       {"id: 3", "id: 256", "r:1:13: robot.id is '256', must be >= 0 and <= 255"},
       {"id: 3", "id: -1", "r:1:13: robot.id is '-1', must be >= 0 and <= 255"},
       {"cyan", "green", "r:1:22: robot.team is 'green', must be cyan or magenta"},

@@ -23,6 +23,7 @@ TEST(Implausible, WhatOurScenesBecomeIsNot) {
   scene.pose->covariance = {1, .5, 0, .5, 1, 0, 0, 0, .1};
   scene.balls.emplace_back();
   scene.balls.back().floor.emplace();
+  scene.balls.back().floor->bounds.far = HUGE_VAL;
   scene.robots.emplace_back();
   scene.robots.back().floor.emplace();
   scene.goals.emplace_back();

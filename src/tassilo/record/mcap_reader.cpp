@@ -213,7 +213,7 @@ class McapReader::Log {
     if (begin == mcap::kMagic) return;
     const bool is_mcap = std::equal(begin.begin(), begin.begin() + 5, mcap::kMagic.begin());
     throw Error(source_->name(), is_mcap ? "is of another version of MCAP, must be of version 0"
-                                         : "is no MCAP file, must begin with 89 'MCAP0'");
+                                         : "is no MCAP file, must begin with the bytes 89 4d 43 41 50");
   }
 
   // ---- with an index
@@ -262,9 +262,12 @@ class McapReader::Log {
     // A chunk that is listed twice would be read twice.
     for (std::size_t i = 1; i < blocks_.size(); ++i)
       whole = whole && blocks_[i].at - blocks_[i - 1].at >= blocks_[i - 1].size;
-    if (whole && statistics) whole = is_time(statistics->end) && statistics->begin <= statistics->end;
     if (!whole) index.damage = "has a damaged index";
     if (!whole || !statistics || statistics->chunk_count != blocks_.size()) return;
+    if (statistics->channel_count > channels_.size()) return;  // they are described in the data only
+    // Some write such times where there are no messages.
+    const auto has_times = [](const auto& extent) { return extent.begin <= extent.end && is_time(extent.end); };
+    if (!has_times(*statistics) || !std::ranges::all_of(blocks_, has_times)) return;
     if (blocks_.empty() && statistics->message_count > 0) return;  // they are outside of chunks
     message_count_ = statistics->message_count;
     begin_ = statistics->begin;
@@ -274,8 +277,8 @@ class McapReader::Log {
 
   bool add_chunk(mcap::View content) {
     const auto index = mcap::parse_chunk_index(content);
-    if (!index || !is_within_file(index->chunk_start, index->chunk_length) || !is_time(index->end) ||
-        index->begin > index->end || !is_readable(index->chunk_start, index->compression))
+    if (!index || !is_within_file(index->chunk_start, index->chunk_length) ||
+        !is_readable(index->chunk_start, index->compression))
       return false;
     check_size(index->chunk_start, index->chunk_length);
     blocks_.push_back({.at = index->chunk_start,
@@ -321,7 +324,7 @@ class McapReader::Log {
     const std::uint64_t size = source_->size();
     Block run;
     std::uint64_t at = mcap::kMagic.size();
-    for (; damage_.empty(); at += kRecordHead) {
+    while (damage_.empty()) {
       if (at == size) {
         damage_ = "ends" + at_byte(at) + ", after a whole record: it was not finished";
         break;
@@ -338,7 +341,7 @@ class McapReader::Log {
         break;
       } else {
         scan_record(head, at, run);
-        at += head.length;
+        at += kRecordHead + head.length;
       }
     }
     end_run(run);
@@ -396,7 +399,7 @@ class McapReader::Log {
   void scan_chunk(const mcap::RecordHead& head, std::uint64_t at) {
     Block block{.at = at, .size = kRecordHead + head.length, .is_chunk = true};
     check_size(at, block.size);
-    if (!parse(block)) {
+    if (!parse(block, true)) {
       ++damaged_chunks_;
       return;
     }
@@ -491,7 +494,8 @@ class McapReader::Log {
   }
 
   /// Reads a block into memory and finds its messages, entries_. False when it is damaged; nothing of it is used then.
-  bool parse(const Block& block) {
+  /// describes: schemas and channels in it are news; once the file is open, what is read does not depend on what was.
+  bool parse(const Block& block, bool describes) {
     held_at_ = block.at;
     held_.resize(static_cast<std::size_t>(block.size));
     source_->read(block.at, held_);
@@ -508,7 +512,7 @@ class McapReader::Log {
     }
     const std::uint64_t at = block.at + static_cast<std::uint64_t>(records.data() - held_.data());
     return mcap::for_each_record(records, [&](mcap::Opcode opcode, mcap::View content, std::size_t place) {
-      if (opcode != mcap::Opcode::message) return describe(opcode, content);
+      if (opcode != mcap::Opcode::message) return !describes || describe(opcode, content);
       const auto message = mcap::parse_message(content);
       if (!message || !is_time(message->log_time) || !is_time(message->publish_time)) return false;
       entries_.push_back({message->log_time, at + place + kRecordHead, static_cast<std::uint32_t>(content.size())});
@@ -519,7 +523,7 @@ class McapReader::Log {
   void load(Block& block) {
     if (block.is_damaged || block.end < from_) return;
     const auto is_outside = [&](const Entry& entry) { return entry.time < block.begin || entry.time > block.end; };
-    if (!parse(block) || std::ranges::any_of(entries_, is_outside)) {
+    if (!parse(block, false) || std::ranges::any_of(entries_, is_outside)) {
       block.is_damaged = true;
       ++damaged_chunks_;
       return;

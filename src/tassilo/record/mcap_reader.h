@@ -43,7 +43,8 @@ class McapReader {
   McapReader& operator=(McapReader&&) noexcept;
   ~McapReader();
 
-  /// By the number that messages have: all of them, but for those whose description is damaged.
+  /// By the number that messages have: all of them, but for those whose description is damaged. Without index also
+  /// those without messages may be missing.
   const std::map<std::uint16_t, McapChannel>& channels() const;
   /// Log time of the first and the last message; 0 without messages.
   std::int64_t begin_ns() const;

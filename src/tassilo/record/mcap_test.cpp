@@ -37,9 +37,9 @@ struct Logged {
   bool operator==(const Logged&) const = default;
 };
 /// What a failed test shows.
-void PrintTo(const Logged& message, std::ostream* out) {
-  *out << "channel " << message.channel << " #" << message.sequence << " at " << message.log_time << ", "
-       << message.data.size() << " bytes";
+std::ostream& operator<<(std::ostream& out, const Logged& message) {
+  return out << "channel " << message.channel << " #" << message.sequence << " at " << message.log_time << ", "
+             << message.data.size() << " bytes";
 }
 
 Logged copy_of(const McapMessage& message) {
@@ -196,6 +196,7 @@ TEST(Mcap, SeekIsReadingEverythingAndLeavingOutWhatIsBefore) {
   writer.add_channel(channel_named("/a"));
   std::vector<std::uint32_t> sequences;
   std::vector<Logged> written;
+  written.reserve(300);
   for (int i = 0; i < 300; ++i)
     written.push_back(
         write(writer, sequences, {1, kBegin + 10 * i + random.below(200), kBegin, 0, random.bytes(random.below(50))}));
@@ -369,13 +370,31 @@ TEST(Mcap, ReadsWhatOthersWrite) {
   for (const std::uint16_t channel : {5, 6, 5}) append(chunk, mcap::Message{channel, 0, 7, 8, mcap::bytes_of("data")});
   append_unknown(chunk, 2);
   mcap::put_chunk_head(chunk, {});
+  const std::size_t chunk_at = chunked.size();
   chunked.insert(chunked.end(), chunk.begin(), chunk.end());
+  const Bytes data = chunked;
   append(chunked, mcap::Footer{});
   chunked.insert(chunked.end(), mcap::kMagic.begin(), mcap::kMagic.end());
   McapReader other(chunked, "b.mcap");
   EXPECT_TRUE(other.is_complete()) << other.damage();
   EXPECT_EQ(rest_of(other).size(), 2u);
   EXPECT_EQ(other.messages_without_channel(), 1u);
+
+  // An index with times that are none is no reason to find less, nor one that lists a chunk twice.
+  const mcap::ChunkIndex index{.begin = ~std::uint64_t{0}, .chunk_start = chunk_at, .chunk_length = chunk.size()};
+  for (const std::uint32_t listed : {1, 2}) {
+    Bytes file_with = data;
+    append(file_with, mcap::DataEnd{});
+    const mcap::Footer footer{.summary_start = file_with.size()};
+    for (std::uint32_t i = 0; i < listed; ++i) append(file_with, index);
+    append(file_with, mcap::Statistics{.message_count = 3, .chunk_count = listed});
+    append(file_with, footer);
+    file_with.insert(file_with.end(), mcap::kMagic.begin(), mcap::kMagic.end());
+    McapReader strange(file_with, "d.mcap");
+    EXPECT_EQ(strange.damage(), listed == 1 ? "" : "has a damaged index");
+    EXPECT_EQ(rest_of(strange).size(), 2u);
+    EXPECT_EQ(strange.end_ns(), 7);
+  }
 
   // The smallest file there is.
   Bytes empty(mcap::kMagic.begin(), mcap::kMagic.end());
@@ -395,7 +414,7 @@ TEST(Mcap, ReaderSaysWhatItCannotRead) {
   EXPECT_EQ(message_of([&] { McapReader reader(folder.path()); }),
             folder.path().string() + ": is no file, must be one of MCAP");
   std::ofstream(path) << "{\"frame\":0}";
-  EXPECT_EQ(refused(), path + ": is no MCAP file, must begin with 89 'MCAP0'");
+  EXPECT_EQ(refused(), path + ": is no MCAP file, must begin with the bytes 89 4d 43 41 50");
   std::ofstream(path) << "\x89MCAP1\r\n";
   EXPECT_EQ(refused(), path + ": is of another version of MCAP, must be of version 0");
 
@@ -458,8 +477,9 @@ TEST(Mcap, EqualSchemasAreWrittenOnce) {
   const McapChannel bare{.topic = "/bare", .schema_encoding = "", .message_encoding = "json"};
   const std::vector<McapChannel> channels{channel_named("/a"), channel_named("/b"), channel_named("/a"), other, bare};
   for (int round = 0; round < 3; ++round)
-    for (std::uint16_t number = 1; number <= channels.size(); ++number) {
-      EXPECT_TRUE(round > 0 || writer.add_channel(channels[number - 1u]) == number);
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+      const auto number = static_cast<std::uint16_t>(i + 1);
+      EXPECT_TRUE(round > 0 || writer.add_channel(channels[i]) == number);
       writer.write(number, kBegin, kBegin, {});
     }
   writer.finish();
@@ -479,8 +499,8 @@ TEST(Mcap, EqualSchemasAreWrittenOnce) {
   EXPECT_EQ(in_summary[mcap::Opcode::channel], 5);
   for (const std::size_t size : {bytes.size(), bytes.size() - 1}) {
     McapReader reader(mcap::View(bytes).first(size), "a.mcap");
-    for (std::uint16_t number = 1; number <= channels.size(); ++number)
-      EXPECT_EQ(reader.channels().at(number), channels[number - 1u]);
+    ASSERT_EQ(reader.channels().size(), channels.size());
+    for (const auto& [number, channel] : reader.channels()) EXPECT_EQ(channel, channels[number - 1u]);
   }
 }
 

@@ -21,6 +21,7 @@ namespace tassilo {
 namespace {
 
 constexpr std::string_view kBuiltin = "org::eclipse::cyclonedds::builtin::";  // types of what a Directory reads
+constexpr std::int64_t kPlausibleGap = 1'000'000;
 constexpr std::size_t kForgottenKept = 1000;  // endpoints that are gone and may still be named by messages
 
 void check_range(const char* field, double value, double low, double high) {
@@ -45,10 +46,11 @@ void check_host(const char* field, const std::string& text) {
     throw Error(field, "is \"" + text + "\", must be a name or an IPv4 address");
 }
 
+bool is_name(std::string_view text) {
+  return !text.empty() && text.size() <= 255 && std::ranges::all_of(text, [](char c) { return c > ' ' && c <= '~'; });
+}
 void check_name(const char* field, const std::string& text) {
-  const auto is_visible = [](char c) { return c > ' ' && c <= '~'; };
-  if (text.empty() || text.size() > 255 || !std::ranges::all_of(text, is_visible))
-    throw Error(field, "is \"" + text + "\", must be 1..255 visible characters without blanks");
+  if (!is_name(text)) throw Error(field, "is \"" + text + "\", must be 1..255 visible characters without blanks");
 }
 
 BusId id_of(const dds_guid_t& guid) {
@@ -130,7 +132,8 @@ class Directory {
       return;
     }
     if (!info.valid_data || told.topic_name == nullptr || told.type_name == nullptr) return;
-    if (std::string_view(told.type_name).starts_with(kBuiltin)) return;
+    if (!is_name(told.topic_name) || !is_name(told.type_name) || std::string_view(told.type_name).starts_with(kBuiltin))
+      return;
     dds_reliability_kind_t reliability = DDS_RELIABILITY_BEST_EFFORT;
     if (told.qos != nullptr) dds_qget_reliability(told.qos, &reliability, nullptr);
     const BusId participant = id_of(told.participant_key);
@@ -371,7 +374,7 @@ class BusReader::Implementation {
     const auto [last, is_first] = last_numbers.try_emplace(writer, number);
     if (!is_first && number > last->second) {
       const std::int64_t gap = number - last->second - 1;
-      if (gap <= std::numeric_limits<std::int64_t>::max() - lost) lost += gap;
+      if (gap <= kPlausibleGap && gap <= std::numeric_limits<std::int64_t>::max() - lost) lost += gap;
       last->second = number;
     }
     // Writers that are gone are not told apart here; a few numbers too many are forgotten without harm.

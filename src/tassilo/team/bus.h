@@ -20,12 +20,14 @@ namespace tassilo {
 
 struct BusOptions {
   int domain = 0;  ///< Those of one domain see each other: ROS_DOMAIN_ID. 0..232
-  /// Name or IPv4 address of the network interface that is used; "lo": nothing leaves this machine.
-  /// The sockets are bound to 0.0.0.0 all the same, at UDP ports 7400 + 250 domain and up. On loopback the kernel is
-  /// told to pass on to them only what comes from 127.0.0.0/8; on any other interface they take packets of all of them.
+  /// Name or IPv4 address of the network interface that is used; "lo": nothing leaves this machine, and nothing comes
+  /// in. The middleware binds its sockets to 0.0.0.0 all the same: two UDP ports of 7410 + 250 domain and up, and with
+  /// multicast 7400 + 250 domain and the next. On loopback the kernel is told to pass on to them only what comes from
+  /// 127.0.0.0/8; on any other interface they take what comes in by all of them: only a firewall keeps it out.
   std::string interface = "lo";
-  /// Hosts to look for others at, names or IPv4 addresses, where multicast does not go; this machine is always looked
-  /// at.
+  /// Hosts to look for others at, names or IPv4 addresses, where multicast does not go; without multicast this machine
+  /// is always looked at. Who is not among them may come all the same. Names are resolved once; unknown ones are told
+  /// by complaints().
   std::vector<std::string> peers;
   /// Others are looked for at 239.255.0.1, too, as ROS 2 does; messages go to each reader by itself all the same. Not
   /// on loopback, whose multicast Linux turns off.
@@ -72,7 +74,8 @@ struct BusSample {
   BusId writer;                     ///< All zeros where the writer is already forgotten.
 };
 
-/// A writer or a reader somewhere on the domain, as its participant tells.
+/// A writer or a reader somewhere on the domain, as its participant tells. Names are 1..255 visible ASCII characters;
+/// endpoints with others are not told of.
 struct BusEndpoint {
   BusId id;
   BusId participant;
@@ -151,7 +154,7 @@ class Bus {
   Bus(const Bus&) = delete;
   Bus& operator=(const Bus&) = delete;
 
-  /// Throws Error when the options are out of range, or this bus already uses the topic with another type.
+  /// Throws Error when the options are out of range, or this bus uses, or has used, the topic with another type.
   BusWriter writer(const BusTopic& topic);
   BusReader reader(const BusTopic& topic);
 
@@ -170,7 +173,7 @@ class Bus {
   void wake();
 
   BusId id() const;
-  /// What the middleware had to complain of, in this process, at most the last 20; for a log.
+  /// What the middleware had to complain of, in this process, at most the last 20, in ASCII; for a log.
   static std::vector<std::string> complaints();
 
  private:

@@ -6,10 +6,12 @@
 #include <netinet/in.h>
 #include <signal.h>
 #include <sys/socket.h>
+#include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <fstream>
 #include <functional>
 #include <sstream>
@@ -31,11 +33,20 @@ constexpr char kType[] = "std_msgs::msg::dds_::ByteMultiArray_";
 constexpr char kOtherType[] = "std_msgs::msg::dds_::Float64MultiArray_";
 constexpr std::chrono::seconds kPatience{20};  // something hangs, whatever the machine and the sanitizer
 
-/// Another domain than that of tests that run beside this one.
-int free_domain(int nth = 0) {
-  const auto* const test = testing::UnitTest::GetInstance()->current_test_info();
-  const std::size_t name = std::hash<std::string>{}(std::string(test->test_suite_name()) + test->name());
-  return static_cast<int>((name + static_cast<std::size_t>(getpid()) * 37 + static_cast<std::size_t>(nth)) % 233);
+/// A domain that no other test of this machine uses while this process lives: whoever has bound the domain's name has
+/// it. The tests in Python do the same. Ports of domains beyond 100 may be taken by any socket.
+int free_domain() {
+  for (int domain = 1; domain <= 100; ++domain) {
+    sockaddr_un name{};
+    name.sun_family = AF_UNIX;
+    const std::string text = "tassilo bus test " + std::to_string(domain);
+    std::ranges::copy(text, name.sun_path + 1);  // a leading zero: of no file, gone with the process
+    const int holder = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + text.size());
+    if (bind(holder, reinterpret_cast<sockaddr*>(&name), size) == 0) return domain;
+    close(holder);
+  }
+  throw std::runtime_error("all domains are in use");
 }
 
 BusOptions on(int domain) {
@@ -211,7 +222,8 @@ TEST(Bus, OnLoopbackNothingFromElsewhereReachesIt) {
 }
 
 TEST(Bus, BytesPassUnchangedWithinAProcess) {
-  Bus bus(on(free_domain())), other(on(free_domain()));
+  const int domain = free_domain();
+  Bus bus(on(domain)), other(on(domain));
   BusWriter writer = bus.writer(topic("rt/a"));
   BusReader reader = other.reader(topic("rt/a"));
   ASSERT_TRUE(until(bus, [&] { return writer.readers() == 1 && reader.writers() == 1; }));
@@ -319,7 +331,7 @@ TEST(Bus, KeepsTheNewestAndCountsTheRest) {
 }
 
 TEST(Bus, DomainsDoNotHearEachOther) {
-  Bus bus(on(free_domain(0))), elsewhere(on(free_domain(1)));
+  Bus bus(on(free_domain())), elsewhere(on(free_domain()));
   BusWriter writer = bus.writer(topic("rt/a"));
   BusReader here = bus.reader(topic("rt/a")), there = elsewhere.reader(topic("rt/a"));
   ASSERT_TRUE(until(bus, [&] { return writer.readers() == 1 && here.writers() == 1; }));

@@ -5,12 +5,12 @@
 //   readers TOPIC N | writers TOPIC N                 -> ok when so many are matched, or "late" after 20 s
 //   send TOPIC HEX                                    -> sent | given up
 //   pattern TOPIC SIZE SEED                           -> sent | given up: bytes of pattern() in bus_pattern.h
-//   take TOPIC N                                      -> the hexadecimal bytes of N messages, blanks between, or "late"
+//   take TOPIC N [MS]                                 -> the hexadecimal bytes of N messages, blanks between, or "late"
 //   taken TOPIC                                       -> number of all messages that came since the last line
-//   lost TOPIC                                        -> number
+//   lost TOPIC | refused TOPIC                        -> number
 //   stream TOPIC SIZE MS                              -> ok; from now on writes a pattern each MS, seeds counting from
 //   0 publications                                      -> TOPIC TYPE ID, blanks between rss -> memory in use [kB]
-// usage: bus_peer DOMAIN
+// usage: bus_peer DOMAIN [INTERFACE [multicast] [PEER...]]
 #include <poll.h>
 #include <unistd.h>
 
@@ -31,7 +31,7 @@ namespace tassilo {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr std::chrono::seconds kPatience{20};
+constexpr int kPatience_ms = 20'000;
 
 std::string hex(std::span<const std::byte> data) {
   std::string text;
@@ -50,12 +50,7 @@ std::vector<std::byte> unhex(const std::string& text) {
 
 class Peer {
  public:
-  explicit Peer(int domain)
-      : bus_([&] {
-          BusOptions options;
-          options.domain = domain;
-          return options;
-        }()) {}
+  explicit Peer(const BusOptions& options) : bus_(options) {}
 
   std::string answer(const std::string& line) {
     std::istringstream words(line);
@@ -76,9 +71,10 @@ class Peer {
     if (verb == "readers" || verb == "writers") {
       int count = 0;
       words >> count;
-      return until([&] {
-        return (verb == "readers" ? writers_.at(topic).readers() : readers_.at(topic).writers()) == count;
-      })
+      return until(kPatience_ms,
+                   [&] {
+                     return (verb == "readers" ? writers_.at(topic).readers() : readers_.at(topic).writers()) == count;
+                   })
                  ? "ok"
                  : "late";
     }
@@ -95,9 +91,11 @@ class Peer {
     }
     if (verb == "take") {
       std::size_t count = 0, found = 0;
+      int patience_ms = 0;
       words >> count;
+      if (!(words >> patience_ms)) patience_ms = kPatience_ms;
       std::string bytes;
-      const bool in_time = until([&] {
+      const bool in_time = until(patience_ms, [&] {
         for (const BusSample& sample : readers_.at(topic).take()) {
           if (!bytes.empty()) bytes += ' ';
           bytes += hex(sample.data);
@@ -109,6 +107,12 @@ class Peer {
     }
     if (verb == "taken") return std::to_string(readers_.at(topic).take().size());
     if (verb == "lost") return std::to_string(readers_.at(topic).lost());
+    if (verb == "refused") return std::to_string(readers_.at(topic).refused());
+    if (verb == "complaints") {
+      std::string text;
+      for (const std::string& complaint : Bus::complaints()) text += complaint + "; ";
+      return text;
+    }
     if (verb == "stream") {
       std::size_t size = 0;
       int ms = 0;
@@ -137,8 +141,8 @@ class Peer {
 
  private:
   template <class Condition>
-  bool until(const Condition& holds) {
-    const auto end = Clock::now() + kPatience;
+  bool until(int patience_ms, const Condition& holds) {
+    const auto end = Clock::now() + std::chrono::milliseconds(patience_ms);
     while (!holds()) {
       if (Clock::now() > end) return false;
       bus_.wait(std::chrono::milliseconds(20));
@@ -157,7 +161,16 @@ class Peer {
 
 int main(int count, char** arguments) {
   try {
-    tassilo::Peer peer(count > 1 ? std::stoi(arguments[1]) : 0);
+    tassilo::BusOptions options;
+    if (count > 1) options.domain = std::stoi(arguments[1]);
+    if (count > 2) options.interface = arguments[2];
+    for (int i = 3; i < count; ++i) {
+      if (arguments[i] == std::string("multicast"))
+        options.multicast = true;
+      else
+        options.peers.push_back(arguments[i]);
+    }
+    tassilo::Peer peer(options);
     std::cout << "ready" << std::endl;
     for (std::string line; std::getline(std::cin, line);) {
       try {

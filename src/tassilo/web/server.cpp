@@ -297,7 +297,8 @@ class Session : public std::enable_shared_from_this<Session> {
     }
     const bool reads = asked.method() == http::verb::get || asked.method() == http::verb::head;
     if (reads)
-      if (const auto file = served_file(shared_.options.pages, *path)) return said(page(*file));
+      if (const auto file = served_file(shared_.options.pages, *path == "/" ? "/" + shared_.options.front : *path))
+        return said(page(*file));
     // The answer may take its time; until then nothing is read, so there is one at a time.
     stream_.expires_never();
     const Manner manner{asked.version(), asked.keep_alive(), asked.method() == http::verb::head};

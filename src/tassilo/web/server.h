@@ -16,6 +16,7 @@ struct WebOptions {
   int port = 8080;                    ///< 0: any that is free. 0..65535
   std::string token;                  ///< Every request must carry it; empty: none.
   std::filesystem::path pages;        ///< Folder whose files are served; empty: none.
+  std::string front = "index.html";   ///< File in there that is the page at "/".
   std::vector<std::string> channels;  ///< Messages at /ws/<channel>.
   std::size_t max_body = 1 << 20;     ///< Of a request. [B]
   int max_clients = 32;               ///< Connections at a time; more are turned away.

@@ -1,4 +1,4 @@
-import { reason } from "../colors/training_model";
+import { reason } from "../link/api";
 import type { Calibration, CalibrationApi, CalibrationChange } from "../link/calibration_api";
 import { Observable } from "../link/observable";
 

@@ -1,5 +1,5 @@
 import { useEffect, useState } from "preact/hooks";
-import { reason } from "../colors/training_model";
+import { reason } from "../link/api";
 import { fixed } from "../format";
 import type { CalibrationResult } from "../link/calibration_api";
 import { useValue } from "../link/observable";

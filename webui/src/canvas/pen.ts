@@ -38,6 +38,9 @@ export type Canvas2D = Pick<
   | "fillStyle" | "strokeStyle" | "lineWidth" | "globalAlpha" | "font" | "textAlign" | "textBaseline" | "lineJoin" | "lineCap"
 >;
 
+/// Half the height of a digit, of a font's height.
+const digit_share = 0.36;
+
 /// Draws in meters of a frame; widths and letters keep their size on the screen.
 export class Pen {
   constructor(
@@ -47,6 +50,8 @@ export class Pen {
     readonly palette: Palette,
     /// Pixels of the canvas for one of the page.
     readonly density: number,
+    /// Of all that it draws: less than 1 fades.
+    readonly opacity = 1,
   ) {
     context.lineJoin = "round";
     context.lineCap = "round";
@@ -55,8 +60,8 @@ export class Pen {
   }
 
   /// The same canvas, in another frame.
-  within(transform: Affine): Pen {
-    return new Pen(this.context, this.size, transform, this.palette, this.density);
+  within(transform: Affine, opacity = this.opacity): Pen {
+    return new Pen(this.context, this.size, transform, this.palette, this.density, opacity);
   }
 
   clear(): void {
@@ -149,12 +154,26 @@ export class Pen {
     const [px, py] = this.at(beside);
     const x = Math.min(Math.max(px + shift_px[0] * d, 4 * d), this.size.width - width - 4 * d);
     const y = Math.min(Math.max(py + shift_px[1] * d, 10 * d), this.size.height - 10 * d);
-    c.globalAlpha = 0.75;
+    c.globalAlpha = 0.75 * this.opacity;
     c.fillStyle = this.palette.ground;
     c.fillRect(x - 3 * d, y - 8 * d, width + 6 * d, 16 * d);
-    c.globalAlpha = 1;
+    c.globalAlpha = this.opacity;
     c.fillStyle = color;
     c.fillText(text, x, y);
+    c.globalAlpha = 1;
+  }
+
+  /// In the middle of a thing, without a ground of its own.
+  inscribe(text: string, at: Point, color: string, height_px: number): void {
+    const c = this.context;
+    c.font = `700 ${height_px * this.density}px system-ui, sans-serif`;
+    c.textAlign = "center";
+    c.textBaseline = "alphabetic";
+    c.fillStyle = color;
+    const [x, y] = this.at(at);
+    c.globalAlpha = this.opacity;
+    c.fillText(text, x, y + digit_share * height_px * this.density);
+    c.globalAlpha = 1;
   }
 
   /// A small mark of a scale.
@@ -172,11 +191,13 @@ export class Pen {
     this.context.setLineDash(dash.map((part) => part * this.density));
     this.context.strokeStyle = color;
     this.context.lineWidth = width * this.density;
+    this.context.globalAlpha = this.opacity;
     this.context.stroke();
+    this.context.globalAlpha = 1;
   }
 
   private fill(color: string, alpha: number): void {
-    this.context.globalAlpha = alpha;
+    this.context.globalAlpha = alpha * this.opacity;
     this.context.fillStyle = color;
     this.context.fill();
     this.context.globalAlpha = 1;

@@ -2,7 +2,7 @@ import { fixed } from "../format";
 import type { Scene } from "../scene";
 import { blocked_edges, free_polygons } from "./free_space";
 import { type Canvas2D, type Palette, Pen } from "./pen";
-import { draw_balls, draw_goals, draw_lines, draw_robots, draw_self, draw_tracks } from "./things";
+import { all_details, draw_balls, draw_goals, draw_lines, draw_robots, draw_self, draw_tracks } from "./things";
 import { type Area, canvas_from_robot, scale_of, type Size } from "./transform";
 
 /// What the view shows of the floor: mostly what is ahead, but all around for cameras that see all around.
@@ -27,10 +27,10 @@ export function draw_robot_view(context: Canvas2D, size: Size, palette: Palette,
   for (let r = step; r < reach; r += step) pen.note(`${fixed(r, 0)} m`, [r, 0]);
   if (scene) {
     draw_lines(pen, scene);
-    draw_goals(pen, scene, true);
-    draw_robots(pen, scene, true);
-    draw_balls(pen, scene, true);
-    draw_tracks(pen, scene);
+    draw_goals(pen, scene, all_details);
+    draw_robots(pen, scene, all_details);
+    draw_balls(pen, scene, all_details);
+    draw_tracks(pen, scene, all_details);
   }
   draw_self(pen, (9 * density) / scale_of(transform));
 }

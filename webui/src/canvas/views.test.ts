@@ -4,6 +4,7 @@ import type { Scene } from "../scene";
 import { empty_scene } from "../testing";
 import { draw_field_view, field_area } from "./field_view";
 import { type Canvas2D, type Palette, palette_names } from "./pen";
+import { recorder } from "./recorder";
 import { draw_robot_view } from "./robot_view";
 import { is_moving } from "./things";
 
@@ -11,22 +12,6 @@ const recorded = readFileSync(new URL("../../mock/fixture/scenes.jsonl", import.
 const palette = Object.fromEntries(palette_names.map((name) => [name, `the ${name}`])) as unknown as Palette;
 const size = { width: 400, height: 300 };
 const plan = { length: 8, width: 5, circle_radius: 1, areas: [{ depth: 1, width: 2 }], goals: [{ side: "+x" as const, color: "blue", width: 1, depth: 0.5 }] };
-
-/// A context that notes down what it is told.
-function recorder(): { context: Canvas2D; calls: [string, ...unknown[]][] } {
-  const calls: [string, ...unknown[]][] = [];
-  const context = new Proxy({}, {
-    get: (_, name: string) => (...values: unknown[]) => {
-      calls.push([name, ...values]);
-      return name === "measureText" ? { width: 30 } : undefined;
-    },
-    set: (_, name: string, value) => {
-      calls.push([name, value]);
-      return true;
-    },
-  });
-  return { context: context as Canvas2D, calls };
-}
 
 /// The scene of an uncalibrated camera.
 function without_floor(scene: Scene): Scene {

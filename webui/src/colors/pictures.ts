@@ -1,8 +1,9 @@
+import { reason } from "../link/api";
 import { browser_world, Channel } from "../link/channel";
 import { type YuvFrame, parse_frame } from "../link/frame_bytes";
 import { Observable } from "../link/observable";
 import type { TrainingApi } from "../link/training_api";
-import { reason, type TrainingModel } from "./training_model";
+import type { TrainingModel } from "./training_model";
 
 /// keeping: a live picture that is being kept, which does not move any more
 export type Shown =

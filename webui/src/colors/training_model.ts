@@ -1,4 +1,4 @@
-import { Refused } from "../link/api";
+import { reason, Refused } from "../link/api";
 import { Observable } from "../link/observable";
 import type { ImageEntry, Quality, Result, Training, TrainingApi } from "../link/training_api";
 import { Classifier } from "./classify";
@@ -368,10 +368,4 @@ export class TrainingModel {
 
 function in_use_of(training: Training | null): string | null {
   return training?.history.find(({ in_use }) => in_use)?.id ?? null;
-}
-
-export function reason(error: unknown): string {
-  if (error instanceof DOMException && error.name === "TimeoutError") return "the server does not answer";
-  if (error instanceof TypeError) return "the server cannot be reached";
-  return error instanceof Error ? error.message : String(error);
 }

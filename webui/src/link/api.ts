@@ -9,6 +9,12 @@ export interface FieldPlan {
   halfway_line?: boolean;
   areas?: { depth: number; width: number }[];
   goals?: { side: "+x" | "-x"; color: string; width: number; depth: number }[];
+  /// Servers may leave these out.
+  segments?: [number, number, number, number][];
+  arcs?: [number, number, number, number, number][];
+  walls?: { x: [number, number]; y: [number, number] } | null;
+  ball?: { radius: [number, number] };
+  robots?: { width: [number, number] };
 }
 
 export interface ServerState {
@@ -94,3 +100,10 @@ export const server_api: Api = {
   stages: () => ask("/api/stages"),
   change: (change) => ask("/api/stages", with_json("PUT", change)),
 };
+
+/// Why a request failed, in words.
+export function reason(error: unknown): string {
+  if (error instanceof DOMException && error.name === "TimeoutError") return "the server does not answer";
+  if (error instanceof TypeError) return "the server cannot be reached";
+  return error instanceof Error ? error.message : String(error);
+}

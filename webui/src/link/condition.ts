@@ -21,7 +21,9 @@ export interface Signs {
 export const silence_limit_ms = 1500;
 
 /// The worst comes first: numbers on the page are only "live" when nothing else is to be said.
-export function condition_of(signs: Signs): Condition {
+///
+/// what  comes while all is well
+export function condition_of(signs: Signs, what = "scene"): Condition {
   if (signs.trouble.startsWith("not admitted")) return { tone: "bad", text: signs.trouble };
   if (signs.scene.kind === "waiting") {
     const seconds = Math.max(Math.ceil((signs.scene.until - signs.now) / 1000), 0);
@@ -31,8 +33,8 @@ export function condition_of(signs: Signs): Condition {
     return signs.silence_ms === null ? { tone: "warning", text: "connecting" } : { tone: "bad", text: "connection lost, connecting" };
   }
   if (signs.ended) return { tone: "warning", text: "source ended" };
-  if (signs.silence_ms === null) return { tone: "warning", text: "connected, no scene yet" };
-  if (signs.silence_ms > silence_limit_ms) return { tone: "warning", text: `no scene for ${(signs.silence_ms / 1000).toFixed(0)} s` };
+  if (signs.silence_ms === null) return { tone: "warning", text: `connected, no ${what} yet` };
+  if (signs.silence_ms > silence_limit_ms) return { tone: "warning", text: `no ${what} for ${(signs.silence_ms / 1000).toFixed(0)} s` };
   if (signs.frozen) return { tone: "warning", text: "frozen" };
   return { tone: "good", text: "live" };
 }

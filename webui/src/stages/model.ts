@@ -1,4 +1,4 @@
-import type { Api, Change, Option, Stage } from "../link/api";
+import { type Api, type Change, type Option, reason, type Stage } from "../link/api";
 import { Observable } from "../link/observable";
 
 /// The stages as the server last told them, and what became of the changes asked for.
@@ -91,12 +91,6 @@ export class StagesModel {
   private update(part: Partial<StagesView>): void {
     this.view.set({ ...this.view.value, ...part });
   }
-}
-
-function reason(error: unknown): string {
-  if (error instanceof DOMException && error.name === "TimeoutError") return "the server does not answer";
-  if (error instanceof TypeError) return "the server cannot be reached";
-  return error instanceof Error ? error.message : String(error);
 }
 
 function without<T>(map: ReadonlyMap<string, T>, keys: readonly string[]): Map<string, T> {

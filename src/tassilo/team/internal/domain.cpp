@@ -2,6 +2,7 @@
 
 #include <arpa/inet.h>
 
+#include <algorithm>
 #include <deque>
 #include <map>
 #include <mutex>
@@ -12,9 +13,9 @@
 namespace tassilo::internal {
 namespace {
 
-constexpr std::size_t kComplaintsKept = 20;
-constexpr int kFirstPort = 7400, kPortsOfDomain = 250;  // DDSI-RTPS 2.5, 9.6.2.4
-constexpr int kSocketsOfDomain = 2;                     // without multicast: for discovery and for messages
+constexpr std::size_t kComplaintsKept = 20, kLongest = 500;  // [characters]
+constexpr int kFirstPort = 7400, kPortsOfDomain = 250;       // DDSI-RTPS 2.5, 9.6.2.4
+constexpr int kSocketsOfDomain = 2;                          // without multicast: for discovery and for messages
 
 /// The middleware prints its warnings unless somebody takes them.
 class Complaints {
@@ -32,8 +33,11 @@ class Complaints {
  private:
   static void add(void* self, const dds_log_data_t* data) {
     auto& here = *static_cast<Complaints*>(self);
-    std::string text(data->message, data->size);
+    std::string text(data->message, std::min(data->size, kLongest));
     while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
+    // Packets are quoted in them, with whatever bytes they hold.
+    std::ranges::replace_if(
+        text, [](char c) { return c < ' ' || c > '~'; }, '?');
     const std::lock_guard lock(here.mutex_);
     if (!here.texts_.empty() && here.texts_.back() == text) return;
     here.texts_.push_back(std::move(text));
@@ -130,7 +134,7 @@ Domain::Domain(const BusOptions& options) : number_(options.domain) {
   try {
     const int first_port = kFirstPort + kPortsOfDomain * number_;
     if (is_loopback(options) &&
-        accept_loopback_only(sockets, first_port, first_port + kPortsOfDomain) != kSocketsOfDomain)
+        accept_loopback_only(sockets, first_port, first_port + kPortsOfDomain) < kSocketsOfDomain)
       throw Error("bus",
                   "cannot find the sockets of domain " + std::to_string(number_) + " to restrict them to loopback");
   } catch (...) {

@@ -1,0 +1,79 @@
+#include "tassilo/team/message_budget.h"
+
+#include <algorithm>
+
+#include "tassilo/base/error.h"
+
+namespace tassilo {
+namespace {
+
+/// Frames come a little early or late; what is due within so much of its period is due. [1]
+constexpr double kJitter = 0.3;
+constexpr double kLeftForMessages = 0.25;  // [s]
+constexpr double kCredit = 10'000;         // two seconds of states [B]
+
+}  // namespace
+
+double usual_rate(std::string_view topic) {
+  constexpr double often = 30, sometimes = 10;
+  for (const Topic& slow : {kScanTopic, kFreeSpaceTopic, kLinesTopic, kGoalsTopic})
+    if (topic == slow.name) return sometimes;
+  return often;
+}
+
+void BudgetOptions::check() const {
+  const auto within = [](const std::string& name, double value, double low, double high) {
+    if (!(value >= low && value <= high))
+      throw Error("bus." + name,
+                  "is " + std::to_string(value) + ", must be " + std::to_string(low) + " .. " + std::to_string(high));
+  };
+  within("bytes_per_second", bytes_per_second, 1000, 1e9);
+  within("picture_rate", picture_rate, 0, 100);
+  for (const auto& [topic, rate] : rates) {
+    if (std::ranges::find(kTopics, topic, &Topic::name) == kTopics.end())
+      throw Error("bus.rates." + topic, "is no topic of a robot");
+    within("rates." + topic, rate, 0.01, 1000);
+  }
+}
+
+MessageBudget::MessageBudget(const BudgetOptions& options) : options_(options) { options_.check(); }
+
+double MessageBudget::period_of(std::string_view topic) const {
+  if (topic == kImageTopic.name) return 1 / options_.picture_rate;
+  const auto named = options_.rates.find(topic);
+  return 1 / (named != options_.rates.end() ? named->second : usual_rate(topic));
+}
+
+bool MessageBudget::is_picture_due(double now) const {
+  if (options_.picture_rate <= 0) return false;
+  const auto due = due_.find(kImageTopic.name);
+  return due == due_.end() || now >= due->second - kJitter * period_of(kImageTopic.name);
+}
+
+bool MessageBudget::allows(const Topic& topic, std::size_t bytes, double now) {
+  const double whole = options_.bytes_per_second;  // of one second
+  if (!has_begun_) left_ = whole;
+  has_begun_ = true;
+  left_ = std::min(whole, left_ + whole * std::max(0., now - filled_at_));
+  filled_at_ = now;
+
+  const bool is_picture = topic.name == kImageTopic.name;
+  const double period = period_of(topic.name);
+  const auto [due, is_first] = due_.try_emplace(std::string(topic.name), now);
+  const bool is_due = is_picture ? is_picture_due(now) : now >= due->second - kJitter * period;
+  // A picture may be larger than all of a second: then it waits until a whole second's bytes are there. And that
+  // messages are withheld must be told, so a state is said on credit.
+  double least = std::min(static_cast<double>(bytes) + (is_picture ? kLeftForMessages * whole : 0), whole);
+  if (topic.name == kTeamStateTopic.name) least = -kCredit;
+  if (!is_due || left_ < least) {
+    ++withheld_;
+    return false;
+  }
+  // On average at the rate, but no burst after a silence.
+  due->second = std::max(due->second, now - period) + period;
+  left_ -= static_cast<double>(bytes);
+  bytes_.add(now, static_cast<double>(bytes));
+  return true;
+}
+
+}  // namespace tassilo
