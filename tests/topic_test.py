@@ -2,7 +2,10 @@
 """A camera driver of ROS 2 as the program meets it: images, lens and odometry from topics. The driver is tests/topic_publisher.cpp.
 
 usage: tests/topic_test.py PROGRAM TOPIC_PUBLISHER [unittest arguments]
+
+The environment's TASSILO_FAST_DDS_PEER, when set, is another driver: of another implementation of DDS.
 """
+import json
 import os
 import pathlib
 import re
@@ -13,6 +16,7 @@ import sys
 import time
 import unittest
 
+from bus_peer import Program, free_domain
 from program import DATA, TIMEOUT_S, ProgramTest, decoded, ffmpeg, main, without_timing
 
 RECORDING = DATA / "d01_approach"
@@ -22,9 +26,6 @@ ODOMETRY = RECORDING / "odometry.jsonl"
 ROBOT = ("--robot", RECORDING / "robot.yaml", "--colors", "div.yaml")
 IMAGES = "topic:/camera/image_raw"
 FRAMES = 40
-# Each test on a domain of its own, and those of another process of this script on others. Above 101 their ports are
-# among those that the system gives to anybody.
-DOMAINS = iter([1 + (os.getpid() * 37 + i) % 100 for i in range(100)])
 
 
 def close(a, b):
@@ -94,7 +95,7 @@ class Live:
 class Topic(ProgramTest):
     def see(self, source, encoding, *arguments, **options):
         """All that a driver sends is seen; the scenes with the times of the recording, and what was told."""
-        domain = next(DOMAINS)
+        domain = free_domain()
         name = f"{domain}.jsonl"
         driver = Driver(self, domain, source, encoding, **options)
         live = Live(self, domain, "--source", IMAGES, "--output", name, *arguments)
@@ -165,8 +166,42 @@ class Topic(ProgramTest):
         self.expect_like(scenes, expected, ("frame", "image", "pose", "lines", "tracks", "why"))
         self.fails_on(says="has full color range, the color table is for limited range", source="jpg", encoding="file", arguments=("--colors", "div.yaml"))
 
+    @unittest.skipUnless("TASSILO_FAST_DDS_PEER" in os.environ, "Fast DDS is not installed; tools/install_deps.sh --references installs it")
+    def test_a_driver_of_another_implementation(self):
+        (self.folder / "few").mkdir()
+        ffmpeg("-i", VIDEO, "-frames:v", 3, self.folder / "few/%04d.png")
+        expected = self.run_file("few.jsonl", *ROBOT, "--source", "few")
+        domain = free_domain()
+        peer = Program(os.environ["TASSILO_FAST_DDS_PEER"], str(domain))
+        self.addCleanup(peer.close)
+
+        def ask(**wish):
+            return json.loads(peer.ask(json.dumps(wish)))
+        for reliable in (True, False):
+            with self.subTest(reliable=reliable):
+                topic = f"/reliable_{reliable}/image".lower()
+                ask(do="writer", topic=f"rt{topic}", type="image", reliable=reliable)
+                name = f"fast_{reliable}.jsonl"
+                live = Live(self, domain, *ROBOT, "--source", f"topic:{topic}", "--output", name)
+                end = time.monotonic() + TIMEOUT_S
+                seen = 0
+                second = 100
+                # Again until it is seen: the first one may be lost while both find each other, and best effort is what it says.
+                while seen < len(expected):
+                    self.assertLess(time.monotonic(), end, live.told)
+                    second += 1
+                    picture = (self.folder / f"few/{seen + 1:04d}.png").read_bytes()
+                    ask(do="send", topic=f"rt{topic}", value={"sec": second, "nanosec": 0, "frame_id": "camera", "format": "png", "data": picture.hex()})
+                    time.sleep(.2)
+                    path = self.folder / name
+                    seen = path.read_bytes().count(b"\n") if path.exists() else 0
+                live.end()
+                for scene, other in zip(self.scenes(name), expected):
+                    for key in ("balls", "goals"):
+                        self.assertTrue(close(scene[key], other[key]), f"{scene[key]}\n{other[key]}")
+
     def fails_on(self, says, source=VIDEO, encoding="yuv422", arguments=ROBOT, **options):
-        domain = next(DOMAINS)
+        domain = free_domain()
         Driver(self, domain, source, encoding, **options)
         return self.fails("run", "--domain", domain, "--source", IMAGES, *arguments, says=says)
 
@@ -196,7 +231,7 @@ class Topic(ProgramTest):
         self.assertNotIn("camera_info", told)
 
     def test_waits_for_a_driver_and_through_silence(self):
-        domain = next(DOMAINS)
+        domain = free_domain()
         live = Live(self, domain, *ROBOT, "--source", IMAGES, "--output", "silence.jsonl")
         live.until_told("waiting for topic /camera/image_raw, which nobody publishes\n")
         driver = Driver(self, domain, VIDEO, "yuv422", pause="10:2.5")
@@ -212,7 +247,7 @@ class Topic(ProgramTest):
         self.assertEqual(times, sorted(set(times)))
 
     def test_ends_while_it_waits(self):
-        live = Live(self, next(DOMAINS), *ROBOT, "--source", IMAGES)
+        live = Live(self, free_domain(), *ROBOT, "--source", IMAGES)
         live.until_told("waiting for topic")
         self.assertIn("ended by a signal before the first frame\n", live.end())
 
@@ -227,7 +262,7 @@ class Topic(ProgramTest):
         self.assertEqual(frames, sorted(set(frames)))
 
     def test_a_clock_that_was_set_back(self):
-        domain = next(DOMAINS)
+        domain = free_domain()
         Driver(self, domain, VIDEO, "yuv422", back=10, rate=10)
         self.fails("run", "--domain", domain, "--source", IMAGES, *ROBOT,
                    says=("topic /camera/image_raw: has stamps that went back by 3", "and stay there: a clock was set, or something was sent from the future; start again"))

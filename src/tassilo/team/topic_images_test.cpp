@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <optional>
@@ -11,6 +10,7 @@
 
 #include "tassilo/base/error.h"
 #include "tassilo/message/codec.h"
+#include "tassilo/team/test_bus_domain.h"
 
 namespace tassilo {
 namespace {
@@ -44,12 +44,9 @@ ros::CompressedImage compressed_at(std::int32_t second, std::vector<std::uint8_t
 /// A driver and who listens to it, each with a bus of its own; time is the test's.
 class Images : public testing::Test {
  protected:
-  static BusOptions options() {
-    const auto* const test = testing::UnitTest::GetInstance()->current_test_info();
+  BusOptions options() const {
     BusOptions options;
-    // Above 101 the ports are among those that the system gives to anybody.
-    options.domain =
-        static_cast<int>((std::hash<std::string>{}(test->name()) + static_cast<std::size_t>(getpid()) * 37) % 101);
+    options.domain = domain_;
     return options;
   }
 
@@ -102,6 +99,7 @@ class Images : public testing::Test {
     return std::nullopt;
   }
 
+  int domain_ = free_domain();
   Bus driver_bus_{options()};
   Bus bus_{options()};
   std::optional<BusWriter> driver_;
