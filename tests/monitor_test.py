@@ -19,8 +19,10 @@ from serve_test import Channel
 RECORDING = DATA / "d01_approach"
 
 
-class Monitor(ProgramTest):
-    traffic = None
+class Watched(ProgramTest):
+    """A monitor to ask, and robots that talk; other tests of it begin with this, too."""
+
+    traffic = None  # the program that talks
 
     def setUp(self):
         self.domain = free_domain()
@@ -90,6 +92,8 @@ class Monitor(ProgramTest):
     def news(self):
         return [(one["robot"], one["text"]) for one in self.ask("/api/monitor/news")]
 
+
+class Monitor(Watched):
     def test_ten_robots_of_several_processes_are_shown(self):
         self.live()
         for robots in ("1,2,3,4", "5,6,7", "8,9,10"):
@@ -251,5 +255,5 @@ class Monitor(ProgramTest):
 
 
 if __name__ == "__main__":
-    Monitor.traffic = sys.argv.pop(2)
+    Watched.traffic = sys.argv.pop(2)
     main()

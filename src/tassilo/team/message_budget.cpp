@@ -64,7 +64,7 @@ bool MessageBudget::allows(const Topic& topic, std::size_t bytes, double now) {
   // A picture may be larger than all of a second: then it waits until a whole second's bytes are there. And that
   // messages are withheld must be told, so a state is said on credit.
   double least = std::min(static_cast<double>(bytes) + (is_picture ? kLeftForMessages * whole : 0), whole);
-  if (topic.name == kTeamStateTopic.name) least = -kCredit;
+  if (topic.name == kTeamStateTopic.name) least = static_cast<double>(bytes) - kCredit;
   if (!is_due || left_ < least) {
     ++withheld_;
     return false;
