@@ -168,7 +168,7 @@ class Publisher {
       std::this_thread::sleep_until(begin +
                                     std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(due)));
       if (arguments_.number("malformed") == k) send_malformed();
-      if (arguments_.number("older") == k) images_->write(last_);
+      if (arguments_.number("older") == k) send_and_wait(*images_, last_);
       send_odometry_until(frame->t + 0.06);
       if (arguments_.number("back") == k) base_ -= 3600;
       if (info_) {
@@ -237,28 +237,29 @@ class Publisher {
       odometry_->write(encoded(message));
     }
   }
+  /// So that it is looked at by itself, and not replaced by a newer one.
+  static void send_and_wait(BusWriter& writer, const std::vector<std::byte>& message) {
+    writer.write(message);
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  }
   void send_malformed() {
-    const auto send = [](BusWriter& writer, const std::vector<std::byte>& message) {
-      writer.write(message);
-      std::this_thread::sleep_for(std::chrono::milliseconds(120));  // each is looked at by itself
-    };
     std::vector<std::byte> cut = last_;
     cut.resize(cut.size() / 2);
-    send(*images_, cut);
+    send_and_wait(*images_, cut);
     if (newest_image_) {
       ros::Image image = *newest_image_;
       image.step = 1;
-      send(*images_, encoded(image));
+      send_and_wait(*images_, encoded(image));
       image = *newest_image_;
       image.height /= 2;
       image.data.resize(std::size_t{image.step} * image.height);
-      send(*images_, encoded(image));
+      send_and_wait(*images_, encoded(image));
       image = *newest_image_;
       image.header.stamp.nanosec = 4'000'000'000;
-      send(*images_, encoded(image));
+      send_and_wait(*images_, encoded(image));
       image = *newest_image_;
       image.encoding = "mono8\33[2J";
-      send(*images_, encoded(image));
+      send_and_wait(*images_, encoded(image));
     }
     if (odometry_) {
       ros::Odometry message;
@@ -268,7 +269,7 @@ class Publisher {
     if (infos_) {
       ros::CameraInfo info = *info_;
       info.distortion_model = "mirror";
-      send(*infos_, encoded(info));
+      send_and_wait(*infos_, encoded(info));
     }
   }
 

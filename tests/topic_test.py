@@ -253,7 +253,9 @@ class Topic(ProgramTest):
 
     def test_what_is_malformed_ends_nothing_and_is_told(self):
         scenes, told = self.see(VIDEO, "yuv422", *ROBOT, "--odometry", "topic:/odom", camera=CAMERA, odometry=ODOMETRY, malformed=20, older=30)
-        self.assertRegex(told, r"images: (\d+ replaced by newer ones or lost on the way, )?1 with an older stamp, 5 refused, the last: encoding: is mono8\?\[2J, must be uyvy")
+        # On a busy machine one of them may be replaced by a newer one, as any other.
+        self.assertRegex(told, r"images: (\d+ replaced by newer ones or lost on the way, )?(1 with an older stamp, )?[345] refused, the last: \w+: ")
+        self.assertNotIn("\33", told)
         self.assertIn("topic /camera/camera_info: camera info: has distortion model \"mirror\", must be plumb_bob, rational_polynomial or equidistant; "
                       "the camera file is not checked\n", told)
         self.assertIn("camera info: 1 refused, the first: camera info: has distortion model", told)

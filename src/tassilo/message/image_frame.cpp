@@ -20,14 +20,17 @@ struct Encoding {
   std::string_view name;
   Kind kind;
   PixelFormat format;  ///< Of packed and nv12.
-  int red = 0;         ///< Of rgb: which of three bytes; blue is the opposite one.
+  bool is_bgr = false;
 };
 
 constexpr std::array kEncodings{
-    Encoding{"uyvy", Kind::packed, PixelFormat::uyvy422}, Encoding{"yuv422", Kind::packed, PixelFormat::uyvy422},
-    Encoding{"yuyv", Kind::packed, PixelFormat::yuyv422}, Encoding{"yuv422_yuy2", Kind::packed, PixelFormat::yuyv422},
-    Encoding{"nv12", Kind::nv12, PixelFormat::nv12},      Encoding{"rgb8", Kind::rgb, PixelFormat::yuv422p, 0},
-    Encoding{"bgr8", Kind::rgb, PixelFormat::yuv422p, 2},
+    Encoding{"uyvy", Kind::packed, PixelFormat::uyvy422},
+    Encoding{"yuv422", Kind::packed, PixelFormat::uyvy422},
+    Encoding{"yuyv", Kind::packed, PixelFormat::yuyv422},
+    Encoding{"yuv422_yuy2", Kind::packed, PixelFormat::yuyv422},
+    Encoding{"nv12", Kind::nv12, PixelFormat::nv12},
+    Encoding{"rgb8", Kind::rgb, PixelFormat::yuv422p},
+    Encoding{"bgr8", Kind::rgb, PixelFormat::yuv422p, true},
 };
 
 /// As much of somebody's text as can be shown.
@@ -81,27 +84,14 @@ void check_layout(const ros::BorrowedImage& image, Kind kind) {
                              std::to_string(image.step));
 }
 
-Frame frame_from_rgb8(const ros::BorrowedImage& image, int red, ColorRange range) {
-  FrameBuffer buffer =
-      make_frame_buffer(PixelFormat::yuv422p, static_cast<int>(image.width), static_cast<int>(image.height), range);
-  const Bt601 bt601(range);
-  for (int r = 0; r < static_cast<int>(image.height); ++r) {
-    const std::uint8_t* const row = image.data.data() + static_cast<std::ptrdiff_t>(r) * image.step;
-    fill_row_from_rgb(buffer, r, bt601, [&](int c) {
-      const std::uint8_t* const pixel = row + 3 * static_cast<std::ptrdiff_t>(c);
-      return RgbSum{pixel[red], pixel[1], pixel[2 - red]};
-    });
-  }
-  return std::move(buffer.frame);
-}
-
 }  // namespace
 
 Frame frame_from(const ros::BorrowedImage& image, const ImageRanges& ranges, std::shared_ptr<const void> storage) {
   const Encoding& encoding = encoding_of(image.encoding);
   check_layout(image, encoding.kind);
-  if (encoding.kind == Kind::rgb) return frame_from_rgb8(image, encoding.red, ranges.rgb);
   const int width = static_cast<int>(image.width), height = static_cast<int>(image.height);
+  if (encoding.kind == Kind::rgb)
+    return frame_from_rgb({image.data.data(), width, height, image.step, encoding.is_bgr}, ranges.rgb);
   const std::ptrdiff_t step = image.step;
   const std::uint8_t* const y = image.data.data();
   Frame frame;

@@ -151,6 +151,7 @@ Frame TopicImages::read(const std::shared_ptr<const std::vector<std::byte>>& byt
 
 std::optional<Frame> TopicImages::frame_of(BusSample sample) {
   const double arrival = 1e-9 * static_cast<double>(sample.arrival_ns);
+  watch_writer(sample.writer);
   const std::int64_t position = taken_++ + counts_.missed + reader_->lost();
   try {
     double t = 0;
@@ -173,6 +174,16 @@ std::optional<Frame> TopicImages::frame_of(BusSample sample) {
     refuse(refusal.what());
   }
   return std::nullopt;
+}
+
+/// A driver that was started anew is another writer, too, but then the former one is gone.
+void TopicImages::watch_writer(const BusId& writer) {
+  const std::optional<BusId> before = std::exchange(writer_, writer);
+  if (is_mixture_told_ || !before || *before == writer) return;
+  const std::vector<BusEndpoint> writers = bus_.publications();
+  if (std::ranges::find(writers, *before, &BusEndpoint::id) == writers.end()) return;
+  is_mixture_told_ = true;
+  news_.push_back(subject_ + " has two publishers at once, whose images are mixed");
 }
 
 void TopicImages::note_first(const Frame& frame) {

@@ -68,7 +68,8 @@ class TopicImages {
   /// known, and when stamps went back and stay there.
   std::optional<Frame> take(double now);
 
-  /// What happened since the last call, for people, in lines without their ends: waiting, silent, back.
+  /// What happened since the last call, for people, in lines without their ends: waiting, silent, back, two
+  /// drivers at once.
   std::vector<std::string> news() { return std::exchange(news_, {}); }
   TopicImageCounts counts() const;
   /// "sensor_msgs/msg/Image, uyvy422 384x172 px, limited range"; of the first image.
@@ -82,6 +83,7 @@ class TopicImages {
   bool is_compressed() const;
   std::optional<Frame> frame_of(BusSample sample);
   Frame read(const std::shared_ptr<const std::vector<std::byte>>& bytes, double& t) const;
+  void watch_writer(const BusId& writer);
   bool is_newer(double t, double now);
   void note_first(const Frame& frame);
   void image_came(double now);
@@ -99,6 +101,8 @@ class TopicImages {
   std::string description_;  ///< Empty before the first image.
   int width_ = 0, height_ = 0;
   ColorRange range_ = ColorRange::limited;
+  std::optional<BusId> writer_;  ///< Of the last message.
+  bool is_mixture_told_ = false;
   std::int64_t taken_ = 0;
   std::optional<std::int64_t> first_;  ///< Position of the first image among all.
   std::optional<double> newest_;       ///< Its stamp. [s]

@@ -135,6 +135,26 @@ TEST_F(Images, OfADriverThatComesBackAndOffersLessAreHeard) {
   EXPECT_EQ(frame->index, 1);
 }
 
+TEST_F(Images, OfTwoDriversAreToldOnce) {
+  publish<ros::Image>();
+  TopicImages images = listen();
+  meet(images);
+  ASSERT_TRUE(pass(images, image_at(10)));
+  Bus other{options()};
+  BusTopic topic;
+  topic.name = wire_topic_name(kTopic);
+  topic.type = wire_type_name<ros::Image>();
+  topic.reliability = BusReliability::reliable;
+  BusWriter second = other.writer(topic);
+  const auto end = std::chrono::steady_clock::now() + 20s;
+  while (second.readers() == 0 && std::chrono::steady_clock::now() < end) other.wait(20ms);
+  for (int time = 11; time < 15; ++time) {
+    std::swap(*driver_, second);
+    ASSERT_TRUE(pass(images, image_at(time)));
+  }
+  EXPECT_THAT(images.news(), ElementsAre("topic /camera/image_raw has two publishers at once, whose images are mixed"));
+}
+
 TEST_F(Images, OfADriverThatComesBackWithAnotherTypeAreMissed) {
   publish<ros::Image>();
   TopicImages images = listen();
