@@ -213,6 +213,11 @@ class Monitor(Watched):
         self.assertEqual((monitor["mode"], monitor["damage"]), ("log", ""))
         self.assertGreater(monitor["end"] - monitor["begin"], 2)
         first, last = self.picture(monitor["begin"] + 1), self.picture(monitor["end"])
+        self.assertTrue(self.picture(monitor["begin"])["robots"], "the first message of a log is heard")
+        news = [(one["number"], one["t"], one["text"]) for one in self.ask("/api/monitor/news")]
+        self.picture(monitor["end"])
+        self.picture(monitor["begin"] + 1)
+        self.assertLessEqual(set(news), {(one["number"], one["t"], one["text"]) for one in self.ask("/api/monitor/news")})
         for picture in (first, last, self.picture(monitor["begin"] + 1)):
             self.assertEqual([robot["id"] for robot in picture["robots"]], [1, 2, 3])
         self.assertEqual(first["robots"], self.picture(monitor["begin"] + 1)["robots"])
@@ -229,6 +234,17 @@ class Monitor(Watched):
         self.assertLess(abs(robots[1]["clock_offset"]), 1)  # as if it were now
         replay.send_signal(signal.SIGINT)
         self.assertEqual(replay.wait(TIMEOUT_S), 0)
+
+    def test_what_garbage_left_in_a_log_is_sent_again_as_it_was(self):
+        self.live("--record", "garbage.mcap")
+        self.talk("1")
+        self.talk("2", "--garbage")
+        self.wait_for("garbage", lambda: self.picture()["counts"]["refused"] > 50 if self.ask("/api/monitor")["end"] else False)
+        self.end()
+        self.end_all()
+        for speed in ("4", "0.5"):
+            result = self.succeeds("replay", "garbage.mcap", "--domain", free_domain(), "--speed", speed, "--duration", "1")
+            self.assertRegex(result.out, r"[1-9]\d* messages sent")
 
     def test_a_run_is_shown(self):
         self.write("robot.yaml", f"robot: {{id: 6, team: magenta}}\ncamera: {RECORDING / 'camera.yaml'}\nfield: msl98\n")

@@ -177,7 +177,7 @@ class Run {
       if (!damage) damage = error;
     }
     progress_->finish();
-    tell_of_recording();
+    tell_news();
     if (odometry_.get() != nullptr) summary_.set_odometry(odometry_.get()->counts());
     tell(summary_.text(
         seconds, camera_summary(source_->camera_counts()) + (topics_ ? topics_->summary() : "") + odometry_.summary()));
@@ -216,7 +216,9 @@ class Run {
     std::fflush(report_);
   }
 
-  void tell_of_recording() const {
+  void tell_news() {
+    if (sender_)
+      for (const std::string& news : sender_->news()) tell_now(news + "\n");
     if (recorder_ == nullptr) return;
     for (const std::string& news : recorder_->news()) tell_now(news + "\n");
   }
@@ -305,7 +307,7 @@ class Run {
       if (!frame) return;
       if (read_++ % arguments_.every != 0) continue;
       const double decode_ms = ms_between(before, Clock::now());
-      if (sender_ && std::exchange(is_first, false)) sender_->begin(frame->t);
+      if (sender_ && std::exchange(is_first, false)) sender_->begin(frame->t, source_->now().has_value());
       if (plays_in_real_time()) {
         // In real time, but a gap in the recording does not stop it for long.
         constexpr double longest_gap = 1;  // [s]
@@ -363,7 +365,7 @@ class Run {
     if (live_ != nullptr) live_->show(frame, scene, workspace_, configuration_);
     if (recorder_ != nullptr) recorder_->after(frame, scene, odometry_);
     if (sender_) sender_->say(frame, scene, workspace_, configuration_, odometry, latency_s);
-    tell_of_recording();
+    tell_news();
     watch_mount(scene);
     summary_.add(scene);
     progress_->frame(++done_);
