@@ -44,11 +44,12 @@ void TeamFusionOptions::check() const {
   above("robot_width", robot_width, 0);
   at_least("robot_common", robot_common, 0);
   above("gate", gate, 0);
-  check_at_least("fusion.sightings", sightings, 1);
+  above("support", support, 0);
   above("confirm_time", confirm_time, 0);
   check_at_least("fusion.misses", misses, 1);
   at_least("max_age", max_age, confirm_time);
-  above("max_sigma", max_sigma, 0);
+  above("max_ball_sigma", max_ball_sigma, 0);
+  above("max_robot_sigma", max_robot_sigma, 0);
   check_at_least("fusion.max_balls", max_balls, 1);
   check_at_least("fusion.max_opponents", max_opponents, 1);
   above("history", history, 0);

@@ -24,13 +24,13 @@ struct TeamFusionOptions {
   double ball_friction = 0.35;  ///< Braking of a ball that rolls on carpet, 3 to 5 % of gravity. [m/s^2], >= 0
   /// Change of velocity within a second that is nobody's kick: carpet, touches. It grows with the root of time.
   /// [m/s/sqrt(s)], > 0
-  double ball_acceleration = 0.4;
+  double ball_acceleration = 0.3;
   double robot_acceleration = 1;  ///< Likewise of robots, which drive as they like. [m/s/sqrt(s)], > 0
   double ball_speed = 1;          ///< Sigma of the velocity of a ball just found. [m/s], > 0
   double robot_speed = 0.7;       ///< Of a robot just found. [m/s], > 0
   double kick_speed = 2.5;        ///< Sigma of the change of velocity by a kick or a wall. [m/s], >= 0
-  double kick_rate = 0.4;         ///< Kicks per second; 0: none. [1/s], >= 0
-  double kick_duration = 0.1;     ///< How long the velocity goes on changing. [s], > 0
+  double kick_rate = 0.6;         ///< Kicks per second; 0: none. [1/s], >= 0
+  double kick_duration = 0.2;     ///< How long the velocity goes on changing. [s], > 0
 
   /// Time in which the correlation of a pose's error with itself falls to 1/e: it is that of the lines in view. [s], >
   /// 0
@@ -42,13 +42,14 @@ struct TeamFusionOptions {
   double robot_common = 0.04;      ///< A robot's middle is told from what shows of its outline. Sigma, [m], >= 0
 
   double gate = 13.8;         ///< Squared Mahalanobis distance of a sighting that belongs to a thing: 99.9 %. [1], > 0
-  int sightings = 3;          ///< A thing is told after so many. >= 1
+  double support = 2.2;       ///< A thing is told when the confidences of its sightings, 1 of robots, add to it. > 0
   double confirm_time = 0.5;  ///< Until it is told it must be seen again so soon. [s], > 0
   int misses = 4;             ///< And is given up when those who saw it miss it so often in a row. >= 1
   double max_age = 2;         ///< Kept so long without being seen by anybody. [s], >= confirm_time
-  double max_sigma = 1.5;     ///< A place less certain than this in any direction is none. [m], > 0
-  int max_balls = 6;          ///< Hypotheses. >= 1
-  int max_opponents = 16;     ///< >= 1
+  double max_ball_sigma = 2;  ///< A place less certain than this in any direction is none. [m], > 0
+  double max_robot_sigma = 1.5;  ///< Likewise of robots. [m], > 0
+  int max_balls = 6;             ///< Hypotheses. >= 1
+  int max_opponents = 16;        ///< >= 1
 
   /// What comes later than this after its capture is dropped: as long as messages may be delayed. [s], > 0
   double history = 1;

@@ -16,9 +16,11 @@ constexpr double kFarthest = 1000;     ///< No field reaches there. [m]
 constexpr double kLeastSigma = 0.001;  ///< Nothing is seen better. [m]
 constexpr double kLongestStep = 0.1;   ///< Between rolling and kicked it may change so often. [s]
 constexpr double kWeightMemory = 0.5;  ///< [s]
-constexpr double kMateSpeed = 1;       ///< A teammate may drive on so fast since it told where it is. Sigma, [m/s]
-constexpr double kMateMemory = 1;      ///< Of one silent for longer nothing is known. [s]
-constexpr double kNever = 1e9;         ///< A cost that no pair is worth.
+constexpr double kLately = 0.3;        ///< [s]
+constexpr double kDoubt = 0.7;
+constexpr double kMateSpeed = 1;   ///< A teammate may drive on so fast since it told where it is. Sigma, [m/s]
+constexpr double kMateMemory = 1;  ///< Of one silent for longer nothing is known. [s]
+constexpr double kNever = 1e9;     ///< A cost that no pair is worth.
 /// Two things of a kind whose middles are closer than this are one: least diameters of a ball and of a robot, and what
 /// poses add. [m]
 constexpr double least_apart(TrackKind kind) { return kind == TrackKind::ball ? 0.25 : 0.3; }
@@ -31,6 +33,10 @@ constexpr double alone(TrackKind kind) { return kind == TrackKind::ball ? 18 : 1
 double largest_sigma(const Eigen::Matrix2d& covariance) {
   const double a = covariance(0, 0), b = covariance(1, 1), c = covariance(0, 1);
   return std::sqrt(std::max((a + b) / 2 + std::hypot((a - b) / 2, c), 0.));
+}
+
+double max_sigma(TrackKind kind, const TeamFusionOptions& options) {
+  return kind == TrackKind::ball ? options.max_ball_sigma : options.max_robot_sigma;
 }
 
 bool is_place(double x, double y) { return std::abs(x) <= kFarthest && std::abs(y) <= kFarthest; }
@@ -72,7 +78,8 @@ Fit fit_of(const FieldTrack& track, const SeenThing& thing, int robot) {
   const double least = std::min(rolls.minus_two_log, kicked.minus_two_log);
   const double both = (1 - track.kicked) * std::exp((least - rolls.minus_two_log) / 2) +
                       track.kicked * std::exp((least - kicked.minus_two_log) / 2);
-  return {std::min(rolls.squared, kicked.squared), least - 2 * std::log(std::max(both, 1e-300))};
+  // How fast a ball is kicked has no Gaussian's thin tails; that it would be another ball is reckoned with elsewhere.
+  return {std::min(rolls.squared, kicked.squared / 2), least - 2 * std::log(std::max(both, 1e-300))};
 }
 
 constexpr double kWrongTeam = 6;  ///< One marker color in twenty is misread: -2 log(.05).
@@ -144,7 +151,7 @@ Eigen::Vector2d place_of(const FieldTrack& track) {
 void count_in(FieldTrack& track, const SeenThing& thing, const SeenImage& image, int witness) {
   track.witnesses[static_cast<std::size_t>(witness)] = {image.robot, image.t};
   track.seen_at = image.t;
-  track.sightings += 1;
+  track.support += thing.confidence;
   track.misses = 0;
   track.weight += thing.confidence;
   track.cyan += thing.team == Team::cyan;
@@ -224,7 +231,12 @@ void hand_out(TeamState& state, const SeenImage& image, TrackKind kind, const Te
   for (const std::size_t i : tracks) {
     FieldTrack& track = state.tracks[i];
     if (was_seen[i]) continue;
-    if (track.id == 0 && witness_of(track, image.robot) >= 0) is_gone[i] = ++track.misses >= options.misses;
+    const int witness = witness_of(track, image.robot);
+    // Who saw this ball lately, and now another one instead, speaks against it.
+    if (kind == TrackKind::ball && !things.empty() && witness >= 0 &&
+        image.t - track.witnesses[static_cast<std::size_t>(witness)].seen_at < kLately)
+      track.weight *= kDoubt;
+    if (track.id == 0 && witness >= 0) is_gone[i] = ++track.misses >= options.misses;
     // Where a thing was seen there is no other one that was not.
     for (const std::size_t other : tracks)
       if (was_seen[other] && state.tracks[other].weight >= track.weight &&
@@ -299,7 +311,7 @@ SeenImage seen_image(const TeamObservation& observation, const TeamFusionOptions
     thing.evidence.noise = sighting.own;
     thing.evidence.by_error = sighting.by_pose * root;
     const Eigen::Matrix2d all = sighting.own + thing.evidence.by_error * thing.evidence.by_error.transpose();
-    if (largest_sigma(all) <= options.max_sigma) image.things.push_back(thing);
+    if (largest_sigma(all) <= max_sigma(thing.kind, options)) image.things.push_back(thing);
   };
   for (const Ball& ball : observation.balls)
     if (ball.floor)
@@ -331,7 +343,7 @@ void advance(TeamState& state, double t, const TeamFusionOptions& options) {
   });
   for (FieldTrack& track : state.tracks) roll_on(track, dt, options);
   std::erase_if(state.tracks, [&](const FieldTrack& track) {
-    return !(largest_sigma(overall(track).covariance.topLeftCorner<2, 2>()) <= options.max_sigma);
+    return !(largest_sigma(overall(track).covariance.topLeftCorner<2, 2>()) <= max_sigma(track.kind, options));
   });
   std::erase_if(state.mates, [&](const Mate& mate) { return !(t - mate.t <= kMateMemory); });
 }
@@ -342,7 +354,7 @@ void take(TeamState& state, const SeenImage& image, const TeamFusionOptions& opt
   remember_mate(state, image);
   for (const TrackKind kind : {TrackKind::ball, TrackKind::robot}) hand_out(state, image, kind, options);
   for (FieldTrack& track : state.tracks)
-    if (track.id == 0 && track.sightings >= options.sightings) track.id = state.next_id++;
+    if (track.id == 0 && track.support >= options.support) track.id = state.next_id++;
 }
 
 TeamWorld told(const TeamState& state, const TeamFusionOptions& options) {

@@ -44,9 +44,9 @@ struct FieldTrack {
   double kicked = 0;                             ///< Probability of the latter.
   std::array<Witness, kMaxWitnesses> witnesses;  ///< Of beliefs, in their order.
   double seen_at = 0;                            ///< [s]
-  int sightings = 0;
+  double support = 0;                            ///< Confidences of all its sightings.
   int misses = 0;     ///< Images of its witnesses since then that do not show it; before it is told.
-  double weight = 0;  ///< Confidences of sightings, fading.
+  double weight = 0;  ///< The same, fading.
   int cyan = 0, magenta = 0;
 
   bool may_be_kicked() const { return kind == TrackKind::ball; }
