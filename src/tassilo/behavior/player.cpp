@@ -21,7 +21,8 @@ constexpr double kBacks = 0.8;
 Assignment role_of(const Situation& now, const PlayerState& before, const PlayerInput& input,
                    const PlayerOptions& options) {
   std::vector<Candidate> team;
-  Candidate me{input.id, options.is_goalkeeper, {}, before.role};
+  Candidate me{input.id, options.is_goalkeeper, {}, {}};
+  if (before.role) me.role_before = before.role->role;
   if (now.pose) me.at = FieldPoint{now.pose->x, now.pose->y};
   team.push_back(me);
   for (const Teammate& mate : input.mates) {
@@ -35,6 +36,21 @@ Assignment role_of(const Situation& now, const PlayerState& before, const Player
   if (input.ball && input.ball->age <= options.max_team_age) ball = input.ball->position.mean;
   if (!ball && now.ball && now.pose) ball = now.in_field(*now.ball);
   return assign_role(input.id, team, ball, now.own_goal, options.roles);
+}
+
+/// The role there was, until another one has been better for long enough: what mates tell of theirs is late, and two
+/// that follow each other's words would change for ever.
+Assignment held_role(const Assignment& better, PlayerState& state, const PlayerOptions& options) {
+  if (!state.role || better.role == state.role->role) {
+    state.other_role_since.reset();
+    state.role = better;
+  } else if (!state.other_role_since) {
+    state.other_role_since = state.t;
+  } else if (state.t - *state.other_role_since >= options.role_hold_s) {
+    state.other_role_since.reset();
+    state.role = better;
+  }
+  return *state.role;
 }
 
 /// Keeps track of whether the robot gets on while its wheels turn.
@@ -94,6 +110,7 @@ void PlayerOptions::check() const {
   check_at_least("player.margin", margin, 0);
   check_above("player.max_pose_age", max_pose_age, 0);
   check_above("player.max_team_age", max_team_age, 0);
+  check_at_least("player.role_hold_s", role_hold_s, 0);
   check_above("player.stuck_way", stuck_way, 0);
   roles.check();
 }
@@ -105,10 +122,9 @@ PlayerStep play(const PlayerState& before, const PlayerInput& input, const Playe
   state.t = std::max(input.t, before.t);
   const double dt = std::clamp(input.t - before.t, 0., 0.5);
   const Situation now = situation(before, input, options);
-  const Assignment assigned = role_of(now, before, input, options);
-  state.role = assigned.role;
+  const Assignment assigned = held_role(role_of(now, before, input, options), state, options);
   if (now.pose) state.pose_known_at = now.t;
-  if (now.ball && now.pose) {
+  if (now.ball && now.pose && !now.is_ball_remembered) {
     state.ball_was_at = now.in_field(*now.ball);
     state.ball_known_at = now.t;
   }

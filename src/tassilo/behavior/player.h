@@ -32,7 +32,8 @@ struct PlayerOptions {
   double margin = 0.35;            ///< Kept free beside the robot where there is room. [radii], >= 0
   double max_pose_age = 4;         ///< A pose without a fix for longer is none. [s], > 0
   double max_team_age = 2;         ///< What mates told longer ago is not known. [s], > 0
-  double stuck_way = 0.5;          ///< Wheels that drove so far while it did not get on: it is stuck. [m], > 0
+  double role_hold_s = 0.4;  ///< Another role must be the better one for so long: longer than words travel. [s], >= 0
+  double stuck_way = 1;      ///< Wheels that drove so far while it did not get on: it is stuck. [m], > 0
   RoleOptions roles;
   void check() const;  ///< Throws Error naming the first field out of range.
 };
@@ -67,15 +68,17 @@ struct PlayerInput {
 
 /// What a player keeps from one picture to the next. A value: it may be kept, copied and continued in several ways.
 struct PlayerState {
-  double t = -1e9;                  ///< Of the last step. [s]
-  double speed = 0, turn_rate = 0;  ///< As the wheels should do it by now. [m/s, rad/s]
-  std::optional<Role> role;
+  double t = -1e9;                         ///< Of the last step. [s]
+  double speed = 0, turn_rate = 0;         ///< As the wheels should do it by now. [m/s, rad/s]
+  std::optional<Assignment> role;          ///< Missing: none yet.
+  std::optional<double> other_role_since;  ///< Since when another one would be better. [s]
   std::optional<double> way;               ///< Direction last chosen around something, robot frame. [rad]
   double aim = 0;                          ///< Where in the other goal's mouth, of its half width. -1..1
   std::optional<FieldPoint> ball_was_at;   ///< When it was last known.
   double ball_known_at = -1e9;             ///< [s]
   double pose_known_at = -1e9;             ///< [s]
   std::optional<double> searches_since;    ///< [s]
+  double search_side = 1;                  ///< To which side it looks around: 1 left, -1 right.
   std::optional<double> has_ball_since;    ///< [s]
   bool is_in_place = false;                ///< It has reached where it wants to stand.
   std::optional<FieldPoint> started_from;  ///< Where it last got on.

@@ -1,6 +1,8 @@
 // Plays matches without pictures and tells the goals: play_matches FIELD FIRST_SEED LAST_SEED SECONDS CYAN MAGENTA
-// [SVG] CYAN and MAGENTA: seeing, black, blind, absent. With SVG the last match is drawn, one panel each ten seconds.
+// [SVG] CYAN and MAGENTA: seeing, black, blind, absent. With SVG the last match is drawn, one picture each PANEL (10)
+// seconds.
 
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -38,10 +40,28 @@ int play(const std::vector<std::string>& words) {
     options.magenta = players_of(words[5]);
     Match match(field, options);
     std::vector<Trace> traces;
-    std::map<std::string, int> actions;
+    std::map<std::string, int> actions, begun;
+    std::map<int, std::string> before;
     while (match.world().state().t < seconds - 1e-9) {
       match.step();
-      for (const auto& [id, output] : match.outputs()) ++actions[output.action];
+      for (const auto& [id, output] : match.outputs()) {
+        ++actions[output.action];
+        begun[output.action] += before[id] != output.action;
+        before[id] = output.action;
+      }
+      if (const char* who = std::getenv("WHO")) {
+        for (const SimRobot& r : match.world().state().robots)
+          if (r.id == std::atoi(who)) {
+            const auto& b = match.world().state().ball;
+            const auto& o = match.outputs().at(r.id);
+            const double dx = b.at.x - r.at.x, dy = b.at.y - r.at.y;
+            std::printf(
+                "%.2f at %.2f %.2f %.0f v %.2f w %.2f | ball %.2f %.2f rel d %.2f a %.0f | %.2f %.2f k%d %s / %s\n",
+                match.world().state().t, r.at.x, r.at.y, r.theta * 57.3, r.speed, r.turn, b.at.x, b.at.y,
+                std::hypot(dx, dy), std::remainder(std::atan2(dy, dx) - r.theta, 6.2831853) * 57.3, o.wheels.left,
+                o.wheels.right, o.wheels.is_kick, o.action.c_str(), o.planning_state.c_str());
+          }
+      }
       if (words.size() > 6) traces.push_back({match.world().state().t, match.world().state(), match.outputs()});
     }
     int stuck_here = 0, out_here = 0;
@@ -53,14 +73,16 @@ int play(const std::vector<std::string>& words) {
     std::printf("seed %d: %d : %d, stuck %d, out %d;", seed, score.cyan, score.magenta, stuck_here, out_here);
     double all = 0;
     for (const auto& [action, count] : actions) all += count;
-    for (const auto& [action, count] : actions) std::printf(" %s %.0f%%", action.c_str(), 100 * count / all);
+    for (const auto& [action, count] : actions)
+      std::printf(" %s %.0f%% (%d)", action.c_str(), 100 * count / all, begun[action]);
     std::printf("\n");
     std::fflush(stdout);
     cyan += score.cyan;
     magenta += score.magenta;
     stuck += stuck_here;
     out += out_here;
-    if (words.size() > 6 && seed == last) std::ofstream(words[6]) << svg_of(traces, match.world(), 10);
+    if (words.size() > 6 && seed == last)
+      std::ofstream(words[6]) << svg_of(traces, match.world(), words.size() > 7 ? std::stod(words[7]) : 10);
   }
   const double matches = last - first + 1;
   std::printf("in the mean of %.0f matches of %g s: cyan %.2f, magenta %.2f, stuck %.1f, out %.1f\n", matches, seconds,

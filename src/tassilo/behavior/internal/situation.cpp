@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "tassilo/base/contract.h"
 #include "tassilo/geometry/angle.h"
@@ -72,6 +73,24 @@ void take_ball(Situation& now, const Scene* scene, const PlayerInput& input,
   now.ball_age = input.ball->age;
 }
 
+/// Was floor seen where the ball should lie?
+bool is_floor_seen_at(const Situation& now, FloorPoint ball) {
+  constexpr double kAround = 4 * std::numbers::pi / 180, kBehind = 0.4;
+  return std::ranges::any_of(now.floor, [&](const SeenFloor& floor) {
+    return std::abs(wrap_angle(bearing(floor.end) - bearing(ball))) < kAround && norm(floor.end) > norm(ball) + kBehind;
+  });
+}
+
+/// A ball that nobody tells of lies where it was, as far as one knows.
+void remember_ball(Situation& now, const PlayerState& before, const PlayerOptions& options) {
+  if (now.ball || !now.pose || !before.ball_was_at || now.t - before.ball_known_at > options.max_team_age) return;
+  const FloorPoint ball = now.in_robot(*before.ball_was_at);
+  if (is_floor_seen_at(now, ball)) return;
+  now.ball = ball;
+  now.ball_age = now.t - before.ball_known_at;
+  now.is_ball_remembered = true;
+}
+
 }  // namespace
 
 FieldPoint Situation::clamped(FieldPoint p) const {
@@ -129,6 +148,7 @@ Situation situation(const PlayerState& before, const PlayerInput& input, const P
     for (const Goal& goal : scene->goals)
       if (goal.color == color_of_other && goal.position) now.goal_seen = now_from_then * *goal.position;
   }
+  remember_ball(now, before, options);
   if (now.pose)
     for (const Teammate& mate : input.mates) {
       if (!mate.pose || mate.age > options.max_team_age / 2) continue;

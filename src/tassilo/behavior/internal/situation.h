@@ -32,6 +32,7 @@ struct Situation {
   FloorPoint ball_velocity;            ///< Over the floor. [m/s]
   double ball_age = 0;                 ///< Since anyone saw it. [s]
   bool is_ball_seen = false;           ///< By its own vision.
+  bool is_ball_remembered = false;     ///< By nobody now.
   std::vector<OtherRobot> others;
   std::vector<SeenFloor> floor;
   FieldExtent arena;                    ///< Where a robot's middle may be. [m]

@@ -25,22 +25,29 @@ Deed stand_at(const Play& play, FieldPoint place, FloorPoint looks_at, const cha
   return {drive_to(now, to, wish, play.state.way, play.options), false, action, "go to its place"};
 }
 
-/// Where to push the ball: to the goal as far as the robot finds room behind the ball; never to the own goal if it can
-/// be helped. Direction in the robot frame.
+/// Where to push the ball: to the goal as far as there is room for the robot behind the ball and for the ball before
+/// it; never to the own goal if it can be helped. Direction in the robot frame.
 double push_direction(const Play& play, FloorPoint ball, FloorPoint goal) {
   const Situation& now = play.now;
-  const double straight = bearing(goal - ball), reach = play.options.radius + now.ball_radius;
-  if (!now.pose) return straight;
+  const double straight = bearing(goal - ball), radius = play.options.radius, reach = radius + now.ball_radius;
   constexpr double kStep = 10 * std::numbers::pi / 180;
   double best = 1e9, direction = straight;
   for (int k = -18; k < 18; ++k) {
     const double tried = straight + k * kStep;
-    const FieldPoint behind = now.in_field(ball - reach * unit(tried)), ahead = now.in_field(ball + unit(tried));
+    const FloorPoint behind = ball - reach * unit(tried);
     double cost = std::abs(k) * kStep;
-    const FieldPoint room = now.clamped(behind);
-    const double lacks = distance(room, behind);
-    if (lacks > 0.15 * play.options.radius) cost += 2 + lacks;
-    if (distance(ahead, now.own_goal) < distance(now.in_field(ball), now.own_goal) - 0.3) cost += 1;
+    if (now.pose) {
+      const FieldPoint stand = now.in_field(behind), ahead = now.in_field(ball + unit(tried));
+      const double lacks = distance(now.clamped(stand), stand);
+      if (lacks > 0.15 * radius) cost += 2 + lacks;
+      if (distance(ahead, now.own_goal) < distance(now.in_field(ball), now.own_goal) - 0.3) cost += 1;
+    }
+    for (const OtherRobot& other : now.others) {
+      if (distance(other.at, behind) < other.radius + 0.9 * radius) cost += 1;
+      const FloorPoint to = other.at - ball;
+      const double along = dot(to, unit(tried)), across = std::abs(cross(unit(tried), to));
+      if (along > 0 && along < 3 * reach && across < other.radius + now.ball_radius) cost += 0.7;
+    }
     if (cost < best) {
       best = cost;
       direction = tried;
@@ -170,14 +177,15 @@ Deed localize(const Play& play) {
 Deed search(const Play& play) {
   const Situation& now = play.now;
   const PlayerOptions& options = play.options;
-  if (!play.state.searches_since) play.state.searches_since = now.t;
+  if (!play.state.searches_since) {
+    play.state.searches_since = now.t;
+    play.state.search_side = play.state.ball_was_at && now.pose && now.in_robot(*play.state.ball_was_at).y < 0 ? -1 : 1;
+  }
   // Once around, then on to another place, and again.
   const double turn_rate = 0.6 * options.max_turn_rate, around = 2 * std::numbers::pi / turn_rate, drive = 5;
   const double since = now.t - *play.state.searches_since, round = std::floor(since / (around + drive));
-  if (since - round * (around + drive) < around || !now.pose) {
-    const double side = play.state.ball_was_at && now.pose && now.in_robot(*play.state.ball_was_at).y < 0 ? -1 : 1;
-    return {{0, side * turn_rate, {}}, false, "search", "look around"};
-  }
+  if (since - round * (around + drive) < around || !now.pose)
+    return {{0, play.state.search_side * turn_rate, {}}, false, "search", "look around"};
   const double x = play.input.field->length / 4, y = play.input.field->width / 4;
   const std::array<FieldPoint, 5> places{{{0, 0}, {x, y}, {-x, -y}, {x, -y}, {-x, y}}};
   const auto place = places[static_cast<std::size_t>(play.input.id + static_cast<int>(round)) % places.size()];
@@ -189,14 +197,11 @@ Deed strike(const Play& play) {
   const Situation& now = play.now;
   const PlayerOptions& options = play.options;
   FloorPoint ball = *now.ball;
-  if (!now.is_ball_seen) {
-    DriveWish wish{.speed = options.max_speed, .turn_rate = options.max_turn_rate, .margin = options.margin};
-    const double near = options.radius + now.ball_radius + 2 * options.radius;
-    if (norm(ball) < near || std::abs(bearing(ball)) > radians(60))
-      return {turn_to(bearing(ball), options), false, "go_to_ball", "look for the team's ball"};
-    return {drive_to(now, ball - near / norm(ball) * ball, wish, play.state.way, options), false, "go_to_ball",
-            "go to the team's ball"};
-  }
+  // Beside the robot it is out of view while the robot goes around it. But what was not seen for long must be looked
+  // for.
+  constexpr double kLong = 1.5;
+  if (!now.is_ball_seen && now.ball_age > kLong && norm(ball) < 4 * options.radius)
+    return {turn_to(bearing(ball), options), false, "go_to_ball", "look for the ball"};
   const FloorPoint goal = aimed_goal(play, ball);
   if (!has_ball(play)) {
     play.state.has_ball_since.reset();
@@ -221,11 +226,15 @@ Deed defend(const Play& play) {
   const Situation& now = play.now;
   const FieldPoint ball = now.in_field(*now.ball), from_goal = ball - now.own_goal;
   const double away = std::max(norm(from_goal), 1e-6), length = play.input.field->length;
-  if (play.rank == 0) {
+  if (play.rank == 0 && away > 0.33 * length) {
     // Half way, but neither in the goalkeeper's way nor in the striker's.
-    const double along =
-        std::clamp(0.5 * away, std::min(0.18 * length, away), std::max(away - 0.15 * length, 0.18 * length));
+    const double along = std::clamp(0.5 * away, 0.18 * length, away - 0.15 * length);
     return stand_at(play, now.own_goal + along / away * from_goal, *now.ball, "defend");
+  }
+  if (play.rank == 0) {
+    // Near the own goal there is a crowd already: where the ball may come out of it.
+    const FieldPoint out = FieldPoint{0, 0} - ball;
+    return stand_at(play, ball + 0.15 * length / std::max(norm(out), 1e-6) * out, *now.ball, "defend");
   }
   // For what comes back from the fight for the ball: behind it, on the side where the field is wider.
   const double back = now.own_goal.x > 0 ? 1 : -1, side = ball.y > 0 ? -1 : 1;
