@@ -130,7 +130,9 @@ PlayerStep play(const PlayerState& before, const PlayerInput& input, const Playe
   }
   watch_progress(state, now, dt, options);
 
-  const Deed deed = deed_of({now, input, options, state, assigned.rank}, assigned.role);
+  Deed deed = deed_of({now, input, options, state, assigned.rank}, assigned.role);
+  // Whatever it is doing: not faster into what was not seen free than it can stop.
+  deed.motion.speed = std::min(deed.motion.speed, std::sqrt(2 * options.acceleration * seen_ahead(now, options)));
   state.way = deed.motion.way;
   step.output.wheels = wheels_for(deed.motion, options);
   step.output.wheels.is_kick = deed.is_kick;

@@ -14,9 +14,9 @@ std::string_view to_string(Role role);
 /// What is known of one robot of the team, oneself or another, when roles are given.
 struct Candidate {
   int id = 0;
-  bool is_goalkeeper = false;       ///< For the whole match.
-  std::optional<FieldPoint> at;     ///< Missing: it does not know where it is.
-  std::optional<Role> role_before;  ///< Missing: none yet.
+  bool is_goalkeeper = false;         ///< For the whole match.
+  std::optional<FieldPoint> at = {};  ///< Missing: it does not know where it is.
+  std::optional<Role> role_before;    ///< Missing: none yet.
 };
 
 /// A role, and the how many-th of all that have it.

@@ -125,6 +125,11 @@ void Match::play(double seconds) {
   while (world_.state().t < until - 1e-9) step();
 }
 
+void Match::set(Team team, Players players) {
+  for (auto& [id, seat] : seats_)
+    if (seat.team == team) seat.kind = players;
+}
+
 std::string svg_of(const std::vector<Trace>& traces, const World& world, double panel_s) {
   const double scale = 90, margin = 0.7;
   const FieldModel& field = world.field();

@@ -48,6 +48,8 @@ class Match {
   /// One frame.
   void step();
   void play(double seconds);
+  /// From now on others play, or the same in the dark.
+  void set(Team team, Players players);
 
   World& world() { return world_; }
   const World& world() const { return world_; }

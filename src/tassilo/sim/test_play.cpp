@@ -62,6 +62,8 @@ int play(const std::vector<std::string>& words) {
                 o.wheels.right, o.wheels.is_kick, o.action.c_str(), o.planning_state.c_str());
           }
       }
+      for (static std::size_t told = 0; std::getenv("CALLS") && told < match.calls().size(); ++told)
+        std::printf("%.2f %s\n", match.calls()[told].t, std::string(to_string(match.calls()[told].call)).c_str());
       if (words.size() > 6) traces.push_back({match.world().state().t, match.world().state(), match.outputs()});
     }
     int stuck_here = 0, out_here = 0;

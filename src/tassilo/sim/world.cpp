@@ -314,7 +314,7 @@ FieldPoint World::free_spot(FieldPoint near, double radius, double away_from) co
 
 void World::put_ball_to_free_spot(FieldPoint near) {
   state_.ball.vx = state_.ball.vy = 0;
-  state_.ball.at = free_spot(near, state_.ball.radius, std::min(2 * options_.stuck_distance, field_.width / 8));
+  state_.ball.at = free_spot(near, state_.ball.radius, options_.stuck_distance * field_.length);
   ball_stays_at_ = state_.ball.at;
   ball_stays_since_ = state_.t;
 }
@@ -565,7 +565,7 @@ void World::referee(std::vector<RefereeEvent>& events) {
     events.push_back({state_.t, RefereeCall::ball_out, Team::unknown});
     return;
   }
-  if (distance(at, ball_stays_at_) > options_.stuck_distance) {
+  if (distance(at, ball_stays_at_) > options_.stuck_distance * field_.length) {
     ball_stays_at_ = at;
     ball_stays_since_ = state_.t;
   } else if (state_.t - ball_stays_since_ >= options_.stuck_s) {

@@ -39,7 +39,7 @@ struct WorldOptions {
   double kick_pause_s = 1;                ///< Until the kicker has pressure again. [s], >= 0
   double run_off = 0.5;                   ///< Robots get no further out of a field without walls. [m], > 0
   double stuck_s = 8;                     ///< A ball that stays where it is for so long is stuck. [s], > 0
-  double stuck_distance = 0.4;            ///< It stays where it is within this distance. [m], > 0
+  double stuck_distance = 0.05;           ///< It stays while it gets no further, of the field's length. [1], > 0
   bool places_robots_at_kick_off = true;  ///< After a goal; else robots stay where they are.
   void check() const;                     ///< Throws Error naming the first field out of range.
 };

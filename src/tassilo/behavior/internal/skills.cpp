@@ -46,7 +46,9 @@ double push_direction(const Play& play, FloorPoint ball, FloorPoint goal) {
       if (distance(other.at, behind) < other.radius + 0.9 * radius) cost += 1;
       const FloorPoint to = other.at - ball;
       const double along = dot(to, unit(tried)), across = std::abs(cross(unit(tried), to));
-      if (along > 0 && along < 3 * reach && across < other.radius + now.ball_radius) cost += 0.7;
+      // Close by it cannot even begin to roll.
+      if (along > 0 && along < 3 * reach && across < other.radius + now.ball_radius)
+        cost += along < 1.5 * reach ? 1.5 : 0.7;
     }
     if (cost < best) {
       best = cost;
@@ -127,8 +129,10 @@ Deed with_ball(const Play& play, FloorPoint ball, FloorPoint goal) {
   });
   if (is_before && is_on_target(play, ball) && (is_near || is_pressed) && (room > 0 || held > 2.5))
     return {{options.dribble_speed, 0, {}}, true, "shoot", "ball to the goal"};
-  if (is_before && is_pressed && now.pose && std::abs(bearing(goal)) < radians(60) && room > 0 &&
-      to_goal > 0.5 * play.input.field->length)
+  // Before it is lost in a fight: somewhere ahead, where mates come sooner than through a crowd.
+  const double room_ahead = room_of_shot(now, ball, ball + FloorPoint{0.2 * play.input.field->length, 0});
+  if (is_before && is_pressed && now.pose && std::abs(bearing(goal)) < radians(75) && room_ahead > 0 &&
+      to_goal > 0.25 * play.input.field->length)
     return {{options.dribble_speed, 0, {}}, true, "clear", "ball away from the others"};
 
   DriveWish wish{.speed = options.dribble_speed, .turn_rate = options.dribble_turn_rate, .margin = 0.2, .stops = false};
