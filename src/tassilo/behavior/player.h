@@ -45,7 +45,7 @@ PlayerOptions player_options(const FieldModel& field);
 std::optional<GoalSide> side_of_goal(const FieldModel& field, GoalColor color);
 
 /// Where the team says that the ball is.
-struct TeamBall {
+struct ToldBall {
   Gaussian2<FieldFrame> position;
   double vx = 0, vy = 0;  ///< Field frame. [m/s]
   double age = 0;         ///< Since one of the team saw it. [s]
@@ -68,7 +68,7 @@ struct PlayerInput {
   double t = 0;                           ///< Now, on the scene's clock; the scene is older. [s]
   const Scene* scene = nullptr;           ///< The newest of its own vision; null: none yet.
   const FieldModel* field = nullptr;      ///< Never null.
-  std::optional<TeamBall> ball;           ///< Missing: nobody knows.
+  std::optional<ToldBall> ball;           ///< Missing: nobody knows.
   std::span<const Teammate> mates;
 };
 

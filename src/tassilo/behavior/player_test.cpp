@@ -116,7 +116,7 @@ TEST(Player, WhatSeesNothingTurnsOnTheSpotAndKicksNothing) {
         input.scene = is_picture ? &black : nullptr;
         input.field = &field;
         // Not even when the team tells where the ball is.
-        input.ball = TeamBall{{{1, 1}, 0.01 * Eigen::Matrix2d::Identity()}, 0, 0, 0.1};
+        input.ball = ToldBall{{{1, 1}, 0.01 * Eigen::Matrix2d::Identity()}, 0, 0, 0.1};
         const PlayerStep step = play(state, input, options);
         state = step.state;
         ASSERT_NEAR(speed_of(step.output), 0, 1e-12);
@@ -224,7 +224,7 @@ TEST(Player, TheBallThatOnlyTheTeamSeesIsGoneTo) {
   input.scene = &scene;
   input.field = &field;
   EXPECT_EQ(play({}, input, {}).output.action, "search");
-  input.ball = TeamBall{{{1, 0}, 0.01 * Eigen::Matrix2d::Identity()}, 0, 0, 0.2};
+  input.ball = ToldBall{{{1, 0}, 0.01 * Eigen::Matrix2d::Identity()}, 0, 0, 0.2};
   EXPECT_EQ(play({}, input, {}).output.action, "go_to_ball");
   input.ball->age = 10;
   EXPECT_EQ(play({}, input, {}).output.action, "search");

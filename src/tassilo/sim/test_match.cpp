@@ -62,7 +62,7 @@ void Match::step() {
       continue;
     }
     std::map<int, Teammate> mates;
-    std::optional<TeamBall> ball;
+    std::optional<ToldBall> ball;
     for (const Word& word : words_) {
       if (word.team != seat.team || word.t > t - options_.team_latency || !options_.is_told) continue;
       if (word.id != id) {
@@ -71,7 +71,7 @@ void Match::step() {
       }
       if (!word.ball) continue;
       // The youngest; of the same age, the surest.
-      TeamBall heard = *word.ball;
+      ToldBall heard = *word.ball;
       heard.age += t - word.t;
       if (!ball || heard.age + heard.position.covariance.trace() < ball->age + ball->position.covariance.trace())
         ball = heard;
@@ -102,7 +102,7 @@ void Match::step() {
       word.mate.pose = field_from_robot;
       for (const TrackSeen& track : scene.tracks) {
         if (track.kind != TrackKind::ball) continue;
-        TeamBall seen;
+        ToldBall seen;
         seen.position.mean = field_from_robot * FloorPoint{track.x, track.y};
         const double pose_share =
             scene.pose->covariance[0] + (track.x * track.x + track.y * track.y) * scene.pose->covariance[8];

@@ -72,7 +72,7 @@ class Match {
     int id = 0;
     Team team = Team::cyan;
     Teammate mate;
-    std::optional<TeamBall> ball;
+    std::optional<ToldBall> ball;
   };
 
   World world_;

@@ -7,9 +7,9 @@
 #include <string>
 #include <tuple>
 
+#include "tassilo/base/assignment.h"
 #include "tassilo/base/option_check.h"
 #include "tassilo/geometry/angle.h"
-#include "tassilo/track/assignment.h"
 
 namespace tassilo {
 namespace {

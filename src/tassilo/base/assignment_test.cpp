@@ -1,4 +1,4 @@
-#include "tassilo/track/assignment.h"
+#include "tassilo/base/assignment.h"
 
 #include <gtest/gtest.h>
 
