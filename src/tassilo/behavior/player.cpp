@@ -115,6 +115,19 @@ void PlayerOptions::check() const {
   roles.check();
 }
 
+PlayerOptions player_options(const FieldModel& field) {
+  PlayerOptions options;
+  options.radius = field.robots.width.middle() / 2;
+  options.wheel_base = 1.6 * options.radius;
+  return options;
+}
+
+std::optional<GoalSide> side_of_goal(const FieldModel& field, GoalColor color) {
+  for (const FieldModel::Goal& goal : field.goals)
+    if (goal.color == color) return goal.side;
+  return std::nullopt;
+}
+
 PlayerStep play(const PlayerState& before, const PlayerInput& input, const PlayerOptions& options) {
   PlayerStep step;
   PlayerState& state = step.state;
@@ -123,7 +136,6 @@ PlayerStep play(const PlayerState& before, const PlayerInput& input, const Playe
   const double dt = std::clamp(input.t - before.t, 0., 0.5);
   const Situation now = situation(before, input, options);
   const Assignment assigned = held_role(role_of(now, before, input, options), state, options);
-  if (now.pose) state.pose_known_at = now.t;
   if (now.ball && now.pose && !now.is_ball_remembered) {
     state.ball_was_at = now.in_field(*now.ball);
     state.ball_known_at = now.t;

@@ -38,6 +38,12 @@ struct PlayerOptions {
   void check() const;  ///< Throws Error naming the first field out of range.
 };
 
+/// For robots of the size that a field's file says.
+PlayerOptions player_options(const FieldModel& field);
+
+/// The side on which the goal of a color stands; missing: the field has none of it.
+std::optional<GoalSide> side_of_goal(const FieldModel& field, GoalColor color);
+
 /// Where the team says that the ball is.
 struct ToldBall {
   Gaussian2<FieldFrame> position;
@@ -76,7 +82,6 @@ struct PlayerState {
   double aim = 0;                          ///< Where in the other goal's mouth, of its half width. -1..1
   std::optional<FieldPoint> ball_was_at;   ///< When it was last known.
   double ball_known_at = -1e9;             ///< [s]
-  double pose_known_at = -1e9;             ///< [s]
   std::optional<double> searches_since;    ///< [s]
   double search_side = 1;                  ///< To which side it looks around: 1 left, -1 right.
   std::optional<double> has_ball_since;    ///< [s]

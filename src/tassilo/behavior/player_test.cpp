@@ -275,6 +275,12 @@ TEST(Player, WheelsStayWithinTheirSpeed) {
   }
 }
 
+TEST(Player, TheGoalOfAColorStandsWhereTheFieldSays) {
+  EXPECT_EQ(side_of_goal(walled_field(), GoalColor::blue), GoalSide::plus_x);
+  EXPECT_EQ(side_of_goal(walled_field(), GoalColor::yellow), GoalSide::minus_x);
+  EXPECT_EQ(side_of_goal(FieldModel{}, GoalColor::blue), std::nullopt);
+}
+
 TEST(Player, OptionsOutOfRangeAreRefused) {
   for (double PlayerOptions::*option :
        {&PlayerOptions::radius, &PlayerOptions::wheel_base, &PlayerOptions::max_speed, &PlayerOptions::acceleration,

@@ -83,6 +83,14 @@ TEST(Match, FieldsOfOtherSizesArePlayedToo) {
   }
 }
 
+TEST(Match, WithoutAWordOfItsMatesATeamStillPlays) {
+  MatchOptions options = with_seed(1, Players::absent);
+  options.is_told = false;
+  Match match(shipped("msl98"), options);
+  match.play(60);
+  EXPECT_GT(match.world().score().cyan, 0);
+}
+
 TEST(Match, EitherSideIsPlayed) {
   MatchOptions options = with_seed(1, Players::absent);
   options.world.cyan_own_goal = GoalSide::plus_x;

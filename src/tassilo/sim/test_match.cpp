@@ -27,8 +27,8 @@ Match::Match(const FieldModel& field, const MatchOptions& options)
       Seat seat;
       seat.team = team;
       seat.kind = kind;
+      seat.options = player_options(field);
       seat.options.is_goalkeeper = k == 0 && options.each > 1;
-      seat.options.radius = field.robots.width.middle() / 2;
       seat.options.wheel_base = world_.wheel_base(id);
       EyesOptions eyes = options.eyes;
       eyes.seed = options.seed;

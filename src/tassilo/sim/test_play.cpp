@@ -2,9 +2,7 @@
 // [SVG] CYAN and MAGENTA: seeing, black, blind, absent. With SVG the last match is drawn, one picture each PANEL (10)
 // seconds.
 
-#include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <fstream>
 #include <map>
 #include <string>
@@ -49,21 +47,6 @@ int play(const std::vector<std::string>& words) {
         begun[output.action] += before[id] != output.action;
         before[id] = output.action;
       }
-      if (const char* who = std::getenv("WHO")) {
-        for (const SimRobot& r : match.world().state().robots)
-          if (r.id == std::atoi(who)) {
-            const auto& b = match.world().state().ball;
-            const auto& o = match.outputs().at(r.id);
-            const double dx = b.at.x - r.at.x, dy = b.at.y - r.at.y;
-            std::printf(
-                "%.2f at %.2f %.2f %.0f v %.2f w %.2f | ball %.2f %.2f rel d %.2f a %.0f | %.2f %.2f k%d %s / %s\n",
-                match.world().state().t, r.at.x, r.at.y, r.theta * 57.3, r.speed, r.turn, b.at.x, b.at.y,
-                std::hypot(dx, dy), std::remainder(std::atan2(dy, dx) - r.theta, 6.2831853) * 57.3, o.wheels.left,
-                o.wheels.right, o.wheels.is_kick, o.action.c_str(), o.planning_state.c_str());
-          }
-      }
-      for (static std::size_t told = 0; std::getenv("CALLS") && told < match.calls().size(); ++told)
-        std::printf("%.2f %s\n", match.calls()[told].t, std::string(to_string(match.calls()[told].call)).c_str());
       if (words.size() > 6) traces.push_back({match.world().state().t, match.world().state(), match.outputs()});
     }
     int stuck_here = 0, out_here = 0;

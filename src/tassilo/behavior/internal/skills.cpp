@@ -10,6 +10,11 @@
 namespace tassilo {
 namespace {
 
+/// Turning with the ball, for so much error. [1/s]
+constexpr double kDribbleGain = 3;
+/// Turning after a ball that rolls off to a side. [1/s]
+constexpr double kFollowGain = 4;
+
 FloorPoint unit(double angle) { return {std::cos(angle), std::sin(angle)}; }
 
 /// To a place, then turned to something; in place until it is pushed well away, so that noise does not make it fidget.
@@ -135,13 +140,19 @@ Deed with_ball(const Play& play, FloorPoint ball, FloorPoint goal) {
       to_goal > 0.25 * play.input.field->length)
     return {{options.dribble_speed, 0, {}}, true, "clear", "ball away from the others"};
 
-  DriveWish wish{.speed = options.dribble_speed, .turn_rate = options.dribble_turn_rate, .margin = 0.2, .stops = false};
+  const DriveWish wish{
+      .speed = options.dribble_speed, .turn_rate = options.dribble_turn_rate, .margin = 0.2, .stops = false};
   Motion motion = drive_to(now, goal, wish, play.state.way, options);
-  // A ball in front of a robot that stands does not turn with it.
-  if (std::abs(bearing(goal)) < radians(100))
-    motion.speed = std::max(
-        motion.speed,
-        std::min(0.4 * options.dribble_speed, std::sqrt(2 * options.acceleration * free_way(now, 0, wish, options))));
+  // The front takes the ball along in a slow turn, but the ball lags and rolls off at the other side: the slower the
+  // further it has rolled. One that lies on the side of the turn is only got better by it.
+  const double side = bearing(ball), to_way = motion.way.value_or(bearing(goal));
+  const double lags = to_way * side < 0 ? std::abs(side) / radians(options.kick_deg) : 0;
+  motion.turn_rate = std::clamp(kDribbleGain * to_way, -options.dribble_turn_rate, options.dribble_turn_rate);
+  if (lags > 0) motion.turn_rate *= std::max(1 - 0.5 * lags, 0.2);
+  if (lags == 0) motion.turn_rate += kFollowGain * side;
+  // A ball before a robot that stands does not turn with it.
+  motion.speed = std::max(std::min(motion.speed, options.dribble_speed), 0.4 * options.dribble_speed);
+  motion.speed = std::min(motion.speed, std::sqrt(2 * options.acceleration * free_way(now, 0, wish, options)));
   return {motion, false, "dribble", is_on_target(play, ball) ? "wait for a free way" : "turn to the goal"};
 }
 
@@ -209,9 +220,13 @@ Deed strike(const Play& play) {
   const FloorPoint goal = aimed_goal(play, ball);
   if (!has_ball(play)) {
     play.state.has_ball_since.reset();
-  } else if (std::abs(bearing(goal)) < radians(100)) {
+    // Too far to the side of the ball to take it to the goal: around it is quicker than in a wide turn that loses it.
+  } else if (std::abs(wrap_angle(bearing(ball) - bearing(goal - ball))) <
+             radians(play.state.has_ball_since ? 60 : 45)) {
     if (!play.state.has_ball_since) play.state.has_ball_since = now.t;
     return with_ball(play, ball, goal);
+  } else {
+    play.state.has_ball_since.reset();
   }
   // Where it will be when the robot is there; a guess, so not far ahead.
   const double until = std::min(norm(ball) / options.max_speed, 1.);
