@@ -68,8 +68,7 @@ struct TeamThing {
   RecycledVector<int> robots;                                ///< Who saw it within max_age, by number.
 };
 struct TeamBall : TeamThing {
-  double weight =
-      0;  ///< How much it was seen lately: sightings, each with its confidence, fading within half a second.
+  double weight = 0;  ///< Confidences of its sightings, fading within a second.
 };
 struct TeamOpponent : TeamThing {
   Team team = Team::unknown;  ///< By most of its sightings.
