@@ -48,7 +48,7 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/tassilo-config-version.cm
 install(FILES ${PROJECT_BINARY_DIR}/tassilo-config.cmake ${PROJECT_BINARY_DIR}/tassilo-config-version.cmake
   DESTINATION ${package_dir} COMPONENT core)
 install(FILES LICENSE NOTICE DESTINATION ${CMAKE_INSTALL_DATADIR}/tassilo COMPONENT core)
-foreach(folder config schema)
+foreach(folder config schema ros2)
   if(EXISTS ${PROJECT_SOURCE_DIR}/${folder})
     install(DIRECTORY ${folder} DESTINATION ${CMAKE_INSTALL_DATADIR}/tassilo COMPONENT core)
   endif()

@@ -19,8 +19,10 @@ from serve_test import Channel
 RECORDING = DATA / "d01_approach"
 
 
-class Monitor(ProgramTest):
-    traffic = None
+class Watched(ProgramTest):
+    """A monitor to ask, and robots that talk; other tests of it begin with this, too."""
+
+    traffic = None  # the program that talks
 
     def setUp(self):
         self.domain = free_domain()
@@ -90,6 +92,8 @@ class Monitor(ProgramTest):
     def news(self):
         return [(one["robot"], one["text"]) for one in self.ask("/api/monitor/news")]
 
+
+class Monitor(Watched):
     def test_ten_robots_of_several_processes_are_shown(self):
         self.live()
         for robots in ("1,2,3,4", "5,6,7", "8,9,10"):
@@ -209,6 +213,11 @@ class Monitor(ProgramTest):
         self.assertEqual((monitor["mode"], monitor["damage"]), ("log", ""))
         self.assertGreater(monitor["end"] - monitor["begin"], 2)
         first, last = self.picture(monitor["begin"] + 1), self.picture(monitor["end"])
+        self.assertTrue(self.picture(monitor["begin"])["robots"], "the first message of a log is heard")
+        news = [(one["number"], one["t"], one["text"]) for one in self.ask("/api/monitor/news")]
+        self.picture(monitor["end"])
+        self.picture(monitor["begin"] + 1)
+        self.assertLessEqual(set(news), {(one["number"], one["t"], one["text"]) for one in self.ask("/api/monitor/news")})
         for picture in (first, last, self.picture(monitor["begin"] + 1)):
             self.assertEqual([robot["id"] for robot in picture["robots"]], [1, 2, 3])
         self.assertEqual(first["robots"], self.picture(monitor["begin"] + 1)["robots"])
@@ -225,6 +234,17 @@ class Monitor(ProgramTest):
         self.assertLess(abs(robots[1]["clock_offset"]), 1)  # as if it were now
         replay.send_signal(signal.SIGINT)
         self.assertEqual(replay.wait(TIMEOUT_S), 0)
+
+    def test_what_garbage_left_in_a_log_is_sent_again_as_it_was(self):
+        self.live("--record", "garbage.mcap")
+        self.talk("1")
+        self.talk("2", "--garbage")
+        self.wait_for("garbage", lambda: self.picture()["counts"]["refused"] > 50 if self.ask("/api/monitor")["end"] else False)
+        self.end()
+        self.end_all()
+        for speed in ("4", "0.5"):
+            result = self.succeeds("replay", "garbage.mcap", "--domain", free_domain(), "--speed", speed, "--duration", "1")
+            self.assertRegex(result.out, r"[1-9]\d* messages sent")
 
     def test_a_run_is_shown(self):
         self.write("robot.yaml", f"robot: {{id: 6, team: magenta}}\ncamera: {RECORDING / 'camera.yaml'}\nfield: msl98\n")
@@ -251,5 +271,5 @@ class Monitor(ProgramTest):
 
 
 if __name__ == "__main__":
-    Monitor.traffic = sys.argv.pop(2)
+    Watched.traffic = sys.argv.pop(2)
     main()

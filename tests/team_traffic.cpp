@@ -16,6 +16,7 @@
 #include <thread>
 #include <vector>
 
+#include "tassilo/app/unix_clock.h"
 #include "tassilo/base/error.h"
 #include "tassilo/files/jpeg.h"
 #include "tassilo/message/from_scene.h"
@@ -60,8 +61,6 @@ Arguments arguments_from(int argc, char** argv) {
   }
   return arguments;
 }
-
-double unix_now() { return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count(); }
 
 struct Placed {
   double x = 0, y = 0, theta = 0;

@@ -33,7 +33,7 @@ packages=(
   g++ cmake ninja-build ccache pkg-config make git
   libeigen3-dev
   libavformat-dev libavcodec-dev libswscale-dev libavutil-dev
-  libboost-dev libqrencode-dev cyclonedds-dev
+  libboost-dev libqrencode-dev cyclonedds-dev libembree-dev
   libyaml-cpp-dev libpng-dev libjpeg-dev zlib1g-dev nlohmann-json3-dev libcli11-dev libfmt-dev libcairo2-dev libceres-dev libapriltag-dev
   libgtest-dev libgmock-dev libbenchmark-dev
   clang-format python3 python3-numpy python3-jsonschema ffmpeg

@@ -6,6 +6,7 @@
 // options: --screenshots DIR  --browser PROGRAM
 //          --robots N       so many are waited for, 10
 //          --least-rate N   drawn a second, over 5 s; 0: it is only told. 0
+//          --only troubles  only whether the troubles of robots are told
 // COMMAND starts a server that prints its address (http://...); it is ended afterwards. Exit code 77: skipped, no browser.
 // The server must have heard the robots for half a minute, or its log be as long, and at least one must have a pose and move.
 import assert from "node:assert/strict";
@@ -14,7 +15,7 @@ import { open_page, run, until } from "./run.mjs";
 
 const pause = (ms) => new Promise((done) => setTimeout(done, ms));
 
-async function main(url, browser, screenshots, { robots: wanted, "least-rate": least_rate }) {
+async function main(url, browser, screenshots, { robots: wanted, "least-rate": least_rate, only }) {
   // Pictures of a time of which there is none are part of the test.
   const { context, page, picture, step, show, api, end } = await open_page(browser, url, { screenshots, prefix: "monitor_", refusals: /status of 404/ });
   const told = (path) => page.evaluate((name) => window.tassilo_monitor[name], path);
@@ -116,6 +117,22 @@ async function main(url, browser, screenshots, { robots: wanted, "least-rate": l
   await page.goto(url);   // its token becomes a cookie
   if ((await api("GET", "/api/monitor")).mode === "log") {
     await log();
+    return end();
+  }
+
+  if (only === "troubles") {
+    await step("troubles of robots are told where they are listed", async () => {
+      await until(`${wanted} robots are there`, async () => (await rows().count()) >= Number(wanted));
+      const ill = (await shown_picture()).robots.filter(({ troubles }) => troubles.length > 0);
+      assert.ok(ill.length > 0, "a robot has troubles");
+      for (const { id, troubles } of ill) {
+        const row = page.locator(`table.robots tbody tr[data-robot="${id}"]`);
+        // Numbers in it go on while it is looked at.
+        const words = troubles[0].split(/[:\d]/)[0].trim();
+        await until(`robot ${id}: ${words}`, async () => (await row.innerText()).includes(words));
+      }
+      await picture("troubles");
+    });
     return end();
   }
 
@@ -372,4 +389,4 @@ async function main(url, browser, screenshots, { robots: wanted, "least-rate": l
   await end();
 }
 
-await run("monitor.mjs", main, { robots: { type: "string", default: "10" }, "least-rate": { type: "string", default: "0" } });
+await run("monitor.mjs", main, { robots: { type: "string", default: "10" }, "least-rate": { type: "string", default: "0" }, only: { type: "string", default: "" } });

@@ -104,7 +104,8 @@ export async function open_page(browser, url, { screenshots, prefix, refusals })
   const faults = [];
   page.on("pageerror", (error) => faults.push(`error: ${error.message}`));
   page.on("console", (message) => {
-    if (message.type() === "error" && !refusals.test(message.text())) faults.push(`console: ${message.text()}`);
+    // 503: a server answers before its source is open, and pages ask again.
+    if (message.type() === "error" && !refusals.test(message.text()) && !/status of 503/.test(message.text())) faults.push(`console: ${message.text()}`);
   });
   let number = 0;
   return {

@@ -28,6 +28,7 @@ Command add_calibrate(CLI::App& program);
 Command add_calibrate_mount(CLI::App& calibrate);
 Command add_eval(CLI::App& program);
 Command add_compare(CLI::App& program);
+Command add_sim_render(CLI::App& sim);
 Command add_info(CLI::App& program);
 
 }  // namespace tassilo

@@ -59,6 +59,9 @@ int main(int argc, char** argv) {
   const Command calibrate = add_calibrate(program);
   const Command eval = add_eval(program);
   const Command compare = add_compare(program);
+  auto* sim = program.add_subcommand("sim", "a simulated world");
+  sim->require_subcommand(1);
+  const Command sim_render = add_sim_render(*sim);
   const Command info = add_info(program);
   const auto command = [&] {
     if (program.got_subcommand("run")) return run();
@@ -69,6 +72,7 @@ int main(int argc, char** argv) {
     if (program.got_subcommand("calibrate")) return calibrate();
     if (program.got_subcommand("eval")) return eval();
     if (program.got_subcommand("compare")) return compare();
+    if (program.got_subcommand("sim")) return sim_render();
     return info();
   };
 

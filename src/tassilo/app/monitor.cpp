@@ -12,6 +12,7 @@
 
 #include "tassilo/app/field_json.h"
 #include "tassilo/app/team_json.h"
+#include "tassilo/app/unix_clock.h"
 #include "tassilo/base/error.h"
 #include "tassilo/message/plausible.h"
 
@@ -21,13 +22,11 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kTeamChannel = "team";
-constexpr std::size_t kMostEars = 1000;                 // a hundred robots; what is more is an attack
-constexpr double kForgotten = 10;                       // nobody has published a topic for so long [s]
-constexpr std::size_t kMemory = std::size_t{64} << 20;  // of team pictures [B]
-constexpr double kKeptStep = 0.095;                     // ten team pictures a second are kept [s]
-constexpr int kDepth = 32;                              // messages of one topic between two looks: a burst of a second
-
-double unix_now() { return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count(); }
+constexpr std::size_t kMostEars = 1000;                // a hundred robots; what is more is an attack
+constexpr double kForgotten = 10;                      // nobody has published a topic for so long [s]
+constexpr std::size_t kMemory = std::size_t{1} << 19;  // of team pictures [B]
+constexpr double kKeptStep = 0.095;                    // ten team pictures a second are kept [s]
+constexpr int kDepth = 32;                             // messages of one topic between two looks: a burst of a second
 
 std::string picture_channel(int robot) { return "picture" + std::to_string(robot); }
 
@@ -95,13 +94,18 @@ LiveMonitor::LiveMonitor(const MonitorOptions& options)
     : options_(options),
       bus_(options.bus),
       view_(options.view),
-      history_(options.memory_s, kMemory),
+      history_(options.memory_s, static_cast<std::size_t>(options.memory_s) * kMemory),
       trails_(options.memory_s),
       server_(with_channels(options.web, true), [this](const WebRequest& request) { return answer(request); }) {
   options_.check();
   if (!options_.record.empty()) record_.emplace(options_.record);
   for (int robot = 0; robot < 256; ++robot)
     picture_channels_.at(static_cast<std::size_t>(robot)) = picture_channel(robot);
+}
+
+bool LiveMonitor::is_known(int robot) const {
+  const std::vector<int>& known = options_.view.known_robots;
+  return known.empty() || std::ranges::find(known, robot) != known.end();
 }
 
 /// Listens to what is published of robots, and no longer to what nobody publishes.
@@ -119,6 +123,8 @@ void LiveMonitor::find_ears(double now) {
                         " is published with another type: " + publication.type.substr(0, 100));
       continue;
     }
+    // Strangers are told of, and not heard: that they are there is known by their state.
+    if (!is_known(topic.robot) && topic.topic->name != kTeamStateTopic.name) continue;
     const bool is_picture = topic.topic->name == kImageTopic.name;
     if (is_picture && (with_pictures_.empty() || with_pictures_.back() != topic.robot))
       with_pictures_.push_back(topic.robot);
@@ -151,7 +157,8 @@ void LiveMonitor::find_ears(double now) {
 void LiveMonitor::record(const BusSample& sample, const Ear& ear) {
   if (!record_ || !record_trouble_.empty()) return;
   try {
-    const Recorded key{ear.topic, sender_of(sample.writer)};
+    constexpr std::size_t most = 4000;  // senders that come and go without end have no channels of their own
+    const Recorded key{ear.topic, channels_.size() < most ? sender_of(sample.writer) : "others"};
     auto channel = channels_.find(key);
     if (channel == channels_.end()) {
       const RobotTopic topic = robot_topic_from(ear.topic);
@@ -174,6 +181,8 @@ void LiveMonitor::listen(double now) {
     BusSample sample;
     const Ear* ear;
   };
+  constexpr double longest_wait = 1;  // between two looks [s]
+  const double wall = unix_now();
   std::vector<Came> came;
   for (auto& [topic, ear] : ears_)
     for (BusSample& sample : ear.reader.take()) came.push_back({std::move(sample), &ear});
@@ -190,11 +199,20 @@ void LiveMonitor::listen(double now) {
     }
     {
       const std::lock_guard lock(mutex_);
-      const double arrival = std::min(now, 1e-9 * static_cast<double>(one.sample.arrival_ns));
+      // On the even clock: how long ago it came does not change when the machine's clock is set.
+      const double ago = wall - 1e-9 * static_cast<double>(one.sample.arrival_ns);
+      const double arrival = now - std::clamp(ago, 0., longest_wait);
       view_.hear({one.ear->topic, sender_of(one.sample.writer), arrival, one.sample.data});
     }
     record(one.sample, *one.ear);
   }
+}
+
+/// To people at the terminal, and for a while to those who look at the page.
+void LiveMonitor::tell(double now, const std::string& complaint) {
+  fmt::print("bus: {}\n", complaint);
+  std::fflush(stdout);
+  bus_troubles_.push_back({now, "bus: " + complaint});
 }
 
 void LiveMonitor::publish(double now) {
@@ -204,6 +222,9 @@ void LiveMonitor::publish(double now) {
   if (!is_wanted && !is_kept) return;
   TeamPicture picture = view_.picture(now);
   picture.troubles.insert(picture.troubles.end(), deaf_.begin(), deaf_.end());
+  constexpr double lasts = 60;  // [s]
+  std::erase_if(bus_troubles_, [&](const Trouble& trouble) { return now - trouble.t > lasts; });
+  for (const Trouble& trouble : bus_troubles_) picture.troubles.push_back(trouble.text);
   if (!record_trouble_.empty()) picture.troubles.push_back("no longer recorded: " + record_trouble_);
   const auto text = std::make_shared<const std::string>(
       team_picture_json(picture, view_.news().empty() ? 0 : view_.news().back().number, with_pictures_));
@@ -226,9 +247,10 @@ void LiveMonitor::run(const std::function<bool()>& is_over) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(until - Clock::now());
     if (bus_.wait(std::clamp(left, std::chrono::milliseconds(1), std::chrono::milliseconds(100))))
       std::this_thread::sleep_for(look);
-    const double now = unix_now();
+    const double now = clock_.now();
     if (Clock::now() >= next_ears) {
       find_ears(now);
+      for (const std::string& complaint : complaints_.news(bus_)) tell(now, complaint);
       next_ears = Clock::now() + look_for_topics;
     }
     listen(now);
@@ -250,7 +272,7 @@ void LiveMonitor::run(const std::function<bool()>& is_over) {
 std::string LiveMonitor::summary() const {
   const std::lock_guard lock(mutex_);
   TeamView view = view_;
-  const TeamCounts counts = view.picture(unix_now()).counts;
+  const TeamCounts counts = view.picture(clock_.now()).counts;
   std::string text = fmt::format("{} messages: {} refused, {} late, {} repeated\n", counts.heard, counts.refused,
                                  counts.late, counts.repeated);
   if (record_) text += fmt::format("log: {}, {} messages\n", options_.record, recorded_);
@@ -305,7 +327,7 @@ WebResponse LogMonitor::answer(const WebRequest& request) {
   if (request.path == "/api/monitor/at") {
     if (!t) return needs("t");
     const TeamPicture picture = log_.at(*t);
-    const auto& news = log_.news();
+    const std::vector<TeamNews> news = log_.news();
     return ok(team_picture_json(picture, news.empty() ? 0 : news.back().number, log_.with_pictures()));
   }
   if (request.path == "/api/monitor/trails") {
@@ -324,7 +346,7 @@ WebResponse LogMonitor::answer(const WebRequest& request) {
     return {200, "image/jpeg", std::move(*picture)};
   }
   if (request.path == "/api/monitor/news") {
-    std::vector<TeamNews> news(log_.news().begin(), log_.news().end());
+    std::vector<TeamNews> news = log_.news();
     const auto after = static_cast<std::int64_t>(std::clamp(number(request, "after").value_or(0), 0., 1e15));
     std::erase_if(news, [&](const TeamNews& one) { return one.number <= after; });
     return ok(team_news_json(news));

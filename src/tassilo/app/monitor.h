@@ -10,9 +10,11 @@
 #include <string>
 #include <vector>
 
+#include "tassilo/app/bus_complaints.h"
 #include "tassilo/app/team_history.h"
 #include "tassilo/app/team_log.h"
 #include "tassilo/app/team_trails.h"
+#include "tassilo/app/unix_clock.h"
 #include "tassilo/field/field_model.h"
 #include "tassilo/record/mcap_writer.h"
 #include "tassilo/team/bus.h"
@@ -28,7 +30,7 @@ struct MonitorOptions {
   BusOptions bus;
   std::string record;     ///< MCAP file of all that is heard; empty: none.
   double rate = 30;       ///< Team pictures to browsers. [1/s], 1..100
-  double memory_s = 300;  ///< That can be looked back at. [s]
+  double memory_s = 300;  ///< That can be looked back at, at most; 512 KiB are kept for each of it. [s]
   void check() const;     ///< Throws Error naming the first field out of range.
 };
 
@@ -67,11 +69,20 @@ class LiveMonitor {
   void listen(double now);
   void record(const BusSample& sample, const Ear& ear);
   void publish(double now);
+  void tell(double now, const std::string& complaint);
+  bool is_known(int robot) const;
 
   const MonitorOptions options_;
   Bus bus_;
   std::map<std::string, Ear, std::less<>> ears_;  ///< By topic on the wire.
   std::vector<int> with_pictures_;
+  struct Trouble {
+    double t = 0;
+    std::string text;
+  };
+  EvenClock clock_;
+  BusComplaints complaints_;
+  std::vector<Trouble> bus_troubles_;
   std::vector<std::string> deaf_;  ///< Topics that cannot be listened to, in words.
   std::optional<McapWriter> record_;
   std::map<Recorded, std::uint16_t> channels_;

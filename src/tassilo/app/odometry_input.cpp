@@ -3,13 +3,20 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "tassilo/base/error.h"
 
 namespace tassilo {
 
-OdometryInput::OdometryInput(const std::string& location, bool waits) : location_(location) {
+OdometryInput::OdometryInput(const std::string& location, bool waits,
+                             std::function<std::vector<OdometrySample>()> taken)
+    : location_(location), taken_(std::move(taken)) {
+  if (taken_) {
+    odometry_.emplace();
+    return;
+  }
   if (location.empty()) return;
   if (is_line_stream(location)) {
     waits_ = waits && location == "-";
@@ -42,6 +49,11 @@ void OdometryInput::update(const Frame& frame, const std::function<bool()>& inte
     odometry_->add(recorded_[next_recorded_].sample);
     arrived_.push_back(recorded_[next_recorded_].sample);
   }
+  if (taken_)
+    for (const OdometrySample& sample : taken_()) {
+      odometry_->add(sample);
+      arrived_.push_back(sample);
+    }
   if (!stream_) return;
   constexpr std::chrono::milliseconds kPatience(100);
   const auto knows = [&] { return newest_ && *newest_ >= frame.t; };

@@ -12,15 +12,16 @@
 
 namespace tassilo {
 
-/// The odometry of a run: all of a file at once, lines that come while it runs (see LineStream), or those of a
-/// recording, which come again with the frames they came with.
+/// The odometry of a run: all of a file at once, what comes while it runs (see LineStream, TopicInput), or that of a
+/// recording, which comes again with the frames it came with.
 class OdometryInput {
  public:
   /// location     a file, `-`, `udp:127.0.0.1:PORT`; empty: none
   /// waits        whether `update` may wait for lines of standard input, as nothing is lost by it: sources other than
   ///              cameras and streams
+  /// taken        when given, samples come from there: what it gives each time. `location` is not looked at then.
   /// Throws Error when a file cannot be read.
-  OdometryInput(const std::string& location, bool waits);
+  OdometryInput(const std::string& location, bool waits, std::function<std::vector<OdometrySample>()> taken = {});
 
   /// Takes what has come before this frame. `interrupted` ends the waiting.
   void update(const Frame& frame, const std::function<bool()>& interrupted);
@@ -28,7 +29,7 @@ class OdometryInput {
   void restart();
 
   /// Is all that will ever be known, known?
-  bool is_whole() const { return !stream_ && !is_recorded_; }
+  bool is_whole() const { return !stream_ && !taken_ && !is_recorded_; }
   /// What the last `update` took.
   const std::vector<OdometrySample>& arrived() const { return arrived_; }
 
@@ -42,6 +43,7 @@ class OdometryInput {
 
   std::string location_;
   bool waits_ = false;
+  std::function<std::vector<OdometrySample>()> taken_;
   std::optional<LineStream> stream_;
   std::optional<Odometry> odometry_;
   std::optional<double> newest_;  ///< Time of what came. [s]

@@ -1,18 +1,20 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstring>
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "tassilo/app/bus_arguments.h"
 #include "tassilo/app/commands.h"
-#include "tassilo/app/progress.h"
 #include "tassilo/app/signals.h"
+#include "tassilo/app/unix_clock.h"
 #include "tassilo/base/error.h"
 #include "tassilo/message/from_scene.h"
 #include "tassilo/record/mcap_reader.h"
@@ -30,7 +32,13 @@ struct ReplayArguments {
 
 using Clock = std::chrono::steady_clock;
 
-double unix_now() { return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count(); }
+/// What a message's stamp becomes; nothing where that is no time: others are to judge what it was.
+std::optional<ros::Time> moved(const ros::Time& stamp, double by) {
+  constexpr double end_of_time = 2147483647;  // that a stamp can say: 2038 [s]
+  const double t = seconds_of(stamp) + by;
+  if (!(t >= 0 && t < end_of_time)) return std::nullopt;
+  return ros_time(t);
+}
 
 class Replay {
  public:
@@ -53,19 +61,18 @@ class Replay {
   }
 
   void operator()() {
-    const double begin = 1e-9 * static_cast<double>(reader_.begin_ns()) + arguments_.from;
-    const double end =
-        arguments_.duration ? begin + *arguments_.duration : 1e-9 * static_cast<double>(reader_.end_ns());
-    if (begin > 1e-9 * static_cast<double>(reader_.end_ns()))
-      throw Error("--from", fmt::format("is {} s, but the log is over after {:.1f} s", arguments_.from,
-                                        1e-9 * static_cast<double>(reader_.end_ns() - reader_.begin_ns())));
+    const double length = seconds(reader_.end_ns() - reader_.begin_ns());
+    if (arguments_.from > length)
+      throw Error("--from", fmt::format("is {} s, but the log is over after {:.1f} s", arguments_.from, length));
     if (!arguments_.quiet) {
-      fmt::print("{}: {} messages, {:.1f} s{}\n", arguments_.log, reader_.message_count(),
-                 1e-9 * static_cast<double>(reader_.end_ns() - reader_.begin_ns()),
+      fmt::print("{}: {} messages, {:.1f} s{}\n", arguments_.log, reader_.message_count(), length,
                  reader_.is_complete() ? "" : "; " + reader_.damage());
       if (left_out_ > 0) fmt::print("{} channels that are no robot's are left out\n", left_out_);
       std::fflush(stdout);
     }
+    const std::int64_t begin = reader_.begin_ns() + nanoseconds(arguments_.from);
+    const std::int64_t end =
+        arguments_.duration ? std::min(reader_.end_ns(), begin + nanoseconds(*arguments_.duration)) : reader_.end_ns();
     do {
       once(begin, end);
     } while (arguments_.loop && !is_interrupted());
@@ -78,50 +85,68 @@ class Replay {
     std::shared_ptr<BusWriter> writer;
   };
 
-  void once(double begin, double end) {
-    reader_.seek(static_cast<std::int64_t>(begin * 1e9));
+  static double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
+  static std::int64_t nanoseconds(double s) { return static_cast<std::int64_t>(s * 1e9); }
+
+  static void wait_until(Clock::time_point then) {
+    constexpr auto patience = std::chrono::milliseconds(50);  // until a signal is noticed
+    while (!is_interrupted() && Clock::now() < then)
+      std::this_thread::sleep_for(std::min<Clock::duration>(patience, then - Clock::now()));
+  }
+
+  void once(std::int64_t begin, std::int64_t end) {
+    reader_.seek(begin);
     const auto started = Clock::now();
     const double started_unix = unix_now();
-    const auto restamped = [&](const ros::Time& stamp) {
-      return ros_time(std::max(0., started_unix + (seconds_of(stamp) - begin) / arguments_.speed));
+    const auto when = [&](std::int64_t log_time) { return seconds(log_time - begin) / arguments_.speed; };
+    const auto due = [&](double s) {
+      return started + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s));
     };
     while (const auto message = reader_.next()) {
-      const double t = 1e-9 * static_cast<double>(message->log_time_ns);
-      if (t > end) return;
-      const auto due = started + std::chrono::duration_cast<Clock::duration>(
-                                     std::chrono::duration<double>((t - begin) / arguments_.speed));
-      constexpr auto patience = std::chrono::milliseconds(50);  // until a signal is noticed
-      while (!is_interrupted() && Clock::now() < due)
-        std::this_thread::sleep_for(std::min<Clock::duration>(patience, due - Clock::now()));
+      if (message->log_time_ns > end) break;
+      wait_until(due(when(message->log_time_ns)));
       if (is_interrupted()) return;
       const auto out = writers_.find(message->channel);
       if (out == writers_.end()) continue;
+      // As much before it is sent as it was before it was written down, however fast: clocks keep their differences.
+      const double later = started_unix + when(message->log_time_ns) - seconds(message->log_time_ns);
       out->second.writer->write(arguments_.keep_stamps
                                     ? std::vector<std::byte>(message->data.begin(), message->data.end())
-                                    : stamped(*out->second.topic, message->data, restamped));
+                                    : stamped(*out->second.topic, message->data, later));
       ++sent_;
     }
+    constexpr double shortest = 0.1;  // a pass takes time, whatever is in it [s]
+    wait_until(due(std::max(shortest, when(end))));
   }
 
-  /// The same message with another stamp.
-  static std::vector<std::byte> stamped(const Topic& topic, std::span<const std::byte> data, const auto& restamped) {
+  /// The same message with stamps so many seconds later.
+  static std::vector<std::byte> stamped(const Topic& topic, std::span<const std::byte> data, double later) {
+    std::vector<std::byte> bytes(data.begin(), data.end());
     if (topic.name == kTransformsTopic.name) {
       auto message = decoded<ros::TFMessage>(data);
-      if (!message) return {data.begin(), data.end()};
+      if (!message) return bytes;
       for (ros::TransformStamped& transform : message->transforms)
-        transform.header.stamp = restamped(transform.header.stamp);
+        transform.header.stamp = moved(transform.header.stamp, later).value_or(transform.header.stamp);
       return encoded(*message);
     }
-    // All others begin with their header; what is no message stays as it is, for whoever hears it to refuse.
-    std::vector<std::byte> bytes(data.begin(), data.end());
-    constexpr std::size_t stamp_at = 4, stamp_size = 8;
-    if (bytes.size() < stamp_at + stamp_size || bytes[1] != std::byte{1}) return bytes;
+    // All others begin with their stamp; what is no message stays as it is, for whoever hears it to refuse.
+    constexpr std::size_t stamp_at = 4;
+    if (bytes.size() < stamp_at + 8 || bytes[0] != std::byte{0} || bytes[1] > std::byte{1}) return bytes;
+    const bool is_big_endian = bytes[1] == std::byte{0};
+    const auto numbers = std::span(bytes).subspan(stamp_at, 8);
+    const auto swap = [&] {
+      if (!is_big_endian) return;
+      std::reverse(numbers.begin(), numbers.begin() + 4);
+      std::reverse(numbers.begin() + 4, numbers.end());
+    };
+    swap();
     ros::Time stamp;
-    std::memcpy(&stamp.sec, bytes.data() + stamp_at, sizeof(stamp.sec));
-    std::memcpy(&stamp.nanosec, bytes.data() + stamp_at + 4, sizeof(stamp.nanosec));
-    stamp = restamped(stamp);
-    std::memcpy(bytes.data() + stamp_at, &stamp.sec, sizeof(stamp.sec));
-    std::memcpy(bytes.data() + stamp_at + 4, &stamp.nanosec, sizeof(stamp.nanosec));
+    std::memcpy(&stamp.sec, numbers.data(), 4);
+    std::memcpy(&stamp.nanosec, numbers.data() + 4, 4);
+    stamp = moved(stamp, later).value_or(stamp);
+    std::memcpy(numbers.data(), &stamp.sec, 4);
+    std::memcpy(numbers.data() + 4, &stamp.nanosec, 4);
+    swap();
     return bytes;
   }
 

@@ -20,6 +20,7 @@
 #include "tassilo/app/run_summary.h"
 #include "tassilo/app/signals.h"
 #include "tassilo/app/team_sender.h"
+#include "tassilo/app/topic_input.h"
 #include "tassilo/app/written_files.h"
 #include "tassilo/base/error.h"
 #include "tassilo/localize/mount_drift.h"
@@ -78,6 +79,33 @@ std::string recording_summary(const RecordingState& recording) {
   return text + "\n";
 }
 
+InputTopics input_topics(const RunArguments& arguments) {
+  InputTopics topics;
+  topics.images = arguments.source.topic.value_or("");
+  topics.camera_info = arguments.source.camera_info;
+  if (is_topic(arguments.odometry)) topics.odometry = topic_of(arguments.odometry);
+  return topics;
+}
+
+/// The same for all that a run has on the bus: what is said and what is listened to.
+BusOptions bus_options(const RunArguments& arguments, const RobotFile& robot) {
+  BusOptions options = arguments.bus.options(robot.bus);
+  if (arguments.source.topic) options.max_bytes = kMostImageBytes;
+  return options;
+}
+
+/// Null where nothing comes from ROS 2.
+std::unique_ptr<TopicInput> topic_input(const RunArguments& arguments, const RobotFile& robot) {
+  const InputTopics topics = input_topics(arguments);
+  return topics.empty() ? nullptr : std::make_unique<TopicInput>(bus_options(arguments, robot), topics);
+}
+
+/// Nothing where odometry is no topic.
+std::function<std::vector<OdometrySample>()> odometry_of(TopicInput* topics, const RunArguments& arguments) {
+  if (topics == nullptr || !is_topic(arguments.odometry)) return {};
+  return [topics] { return topics->take_odometry(); };
+}
+
 double ms_between(std::chrono::steady_clock::time_point from, std::chrono::steady_clock::time_point to) {
   return std::chrono::duration<double, std::milli>(to - from).count();
 }
@@ -92,7 +120,8 @@ class Run {
         // Nothing but scene lines may go where scene lines go.
         report_(arguments.output == "-" ? stderr : stdout),
         configuration_(load(live != nullptr ? live->changes() : VisionChanges{})),
-        odometry_(arguments.odometry, loses_nothing(arguments.source)) {
+        topics_(topic_input(arguments, configuration_->setup.robot)),
+        odometry_(arguments.odometry, loses_nothing(arguments.source), odometry_of(topics_.get(), arguments)) {
     check_paths(arguments_, configuration_->setup.read);
     workspace_.watch_boundary = !arguments_.overlay_step.empty();
   }
@@ -148,9 +177,10 @@ class Run {
       if (!damage) damage = error;
     }
     progress_->finish();
-    tell_of_recording();
+    tell_news();
     if (odometry_.get() != nullptr) summary_.set_odometry(odometry_.get()->counts());
-    tell(summary_.text(seconds, camera_summary(source_->camera_counts()) + odometry_.summary()));
+    tell(summary_.text(
+        seconds, camera_summary(source_->camera_counts()) + (topics_ ? topics_->summary() : "") + odometry_.summary()));
     if (is_interrupted()) tell("\nended by a signal; all lines are complete\n");
     tell(sinks.names());
     if (sender_) tell(sender_->summary());
@@ -172,7 +202,7 @@ class Run {
            arguments_.overlay.empty() && arguments_.label_maps.empty() &&
            (std::filesystem::is_regular_file(path, ignored) || std::filesystem::is_directory(path, ignored));
   }
-  bool is_live() const { return arguments_.source.camera.has_value(); }
+  bool is_live() const { return arguments_.source.camera || arguments_.source.topic; }
   /// Is the time until a frame is there that of waiting for it?
   bool waits_for_frames() const { return info_.live || is_piped_; }
   const std::string& name() const { return info_.name; }
@@ -186,7 +216,9 @@ class Run {
     std::fflush(report_);
   }
 
-  void tell_of_recording() const {
+  void tell_news() {
+    if (sender_)
+      for (const std::string& news : sender_->news()) tell_now(news + "\n");
     if (recorder_ == nullptr) return;
     for (const std::string& news : recorder_->news()) tell_now(news + "\n");
   }
@@ -218,7 +250,7 @@ class Run {
     options.fps = arguments_.source.fps;
     options.threads = arguments_.threads;
     options.interrupted = is_interrupted;
-    if (is_live()) options.camera = *arguments_.source.camera;
+    if (arguments_.source.camera) options.camera = *arguments_.source.camera;
     // Frames that fit the camera file need no --size.
     if (const auto& camera = configuration_->setup.vision.camera; camera && arguments_.source.size.empty()) {
       options.camera.width = camera->width;
@@ -227,8 +259,10 @@ class Run {
     options.camera_news = [this](const CameraNews& news) {
       tell_now(fmt::format("{}: {}\n", to_string(news.state), news.text));
     };
+    if (topics_) topics_->set_news([this](const std::string& line) { tell_now(line + "\n"); });
     const bool is_first = !source_;
-    source_.emplace(open_source_of(options));
+    source_.emplace(arguments_.source.topic ? topics_->open_images(options, arguments_.source.yuv_range)
+                                            : open_source_of(options));
     if (is_first) info_ = source_->info();  // a file that is played again is the same
     begin_history();
     check_source(configuration_->vision);
@@ -249,7 +283,7 @@ class Run {
     const RobotFile& robot = configuration_->setup.robot;
     TeamSenderOptions options;
     options.robot = arguments_.robot_id.value_or(robot.id);
-    if (arguments_.says_on_bus) options.bus = arguments_.bus.options(robot.bus);
+    if (arguments_.says_on_bus) options.bus = bus_options(arguments_, robot);
     if (const auto bytes = robot.bus.bytes_per_second) options.budget.bytes_per_second = *bytes;
     if (const auto rate = robot.bus.picture_rate) options.budget.picture_rate = *rate;
     options.budget.rates = robot.bus.rates;
@@ -273,7 +307,7 @@ class Run {
       if (!frame) return;
       if (read_++ % arguments_.every != 0) continue;
       const double decode_ms = ms_between(before, Clock::now());
-      if (sender_ && std::exchange(is_first, false)) sender_->begin(frame->t);
+      if (sender_ && std::exchange(is_first, false)) sender_->begin(frame->t, source_->now().has_value());
       if (plays_in_real_time()) {
         // In real time, but a gap in the recording does not stop it for long.
         constexpr double longest_gap = 1;  // [s]
@@ -309,6 +343,7 @@ class Run {
     const Vision& vision = configuration_->vision;
     vision.check_frames(name_of(frame, name()), frame.view.width(), frame.view.height(), frame.range);
     odometry_.update(frame, is_interrupted);
+    if (topics_) topics_->check_camera(configuration_->setup.vision.camera);
     const Odometry* const odometry = odometry_.get();
     if (recorder_ != nullptr) recorder_->before(frame, configuration_, workspace_.history, odometry_);
     Scene scene = seen_by(vision, frame, odometry);
@@ -330,7 +365,7 @@ class Run {
     if (live_ != nullptr) live_->show(frame, scene, workspace_, configuration_);
     if (recorder_ != nullptr) recorder_->after(frame, scene, odometry_);
     if (sender_) sender_->say(frame, scene, workspace_, configuration_, odometry, latency_s);
-    tell_of_recording();
+    tell_news();
     watch_mount(scene);
     summary_.add(scene);
     progress_->frame(++done_);
@@ -400,6 +435,7 @@ class Run {
   Recorder* recorder_;
   std::FILE* report_;
   std::shared_ptr<const Configuration> configuration_;
+  std::unique_ptr<TopicInput> topics_;  ///< Outlives what reads from it.
   OdometryInput odometry_;
   std::optional<FrameSource> source_;
   const bool is_piped_ = arguments_.source.source == "-" && comes_as_it_comes(STDIN_FILENO);
@@ -420,7 +456,7 @@ class Run {
 }  // namespace
 
 bool loses_nothing(const SourceArguments& source) {
-  return !source.camera && source.source.find("://") == std::string::npos;
+  return !source.camera && !source.topic && source.source.find("://") == std::string::npos;
 }
 
 int run(const RunArguments& arguments, LiveView* live, Recorder* recorder) {

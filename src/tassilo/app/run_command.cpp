@@ -13,6 +13,7 @@
 #include "tassilo/app/number_list.h"
 #include "tassilo/app/recorder.h"
 #include "tassilo/app/run.h"
+#include "tassilo/app/topic_input.h"
 
 namespace tassilo {
 std::optional<StartPose> start_pose_from(const std::string& text) {
@@ -31,8 +32,10 @@ std::optional<StartPose> start_pose_from(const std::string& text) {
 void add_run_options(CLI::App& command, RunArguments& arguments) {
   command.add_option("-r,--robot", arguments.robot, "robot.yaml: camera, colors, field and options of one robot");
   arguments.source.add_to(command);
-  command.add_option("--odometry", arguments.odometry,
-                     "odometry.jsonl on the clock of the frames; live: - for standard input, or udp:127.0.0.1:PORT");
+  command.add_option(
+      "--odometry", arguments.odometry,
+      "odometry.jsonl on the clock of the frames; live: - for standard input, udp:127.0.0.1:PORT, or a topic "
+      "of ROS 2 such as topic:/odom");
   command.add_option("--start-pose", arguments.start_pose,
                      "X,Y,THETA[,SIGMA_XY,SIGMA_THETA] on the field, instead of the robot file's [m, rad]");
   command.add_option("-o,--output", arguments.output, "scenes as JSON Lines; - for standard output");
@@ -66,6 +69,7 @@ void understand(RunArguments& arguments) {
   if (arguments.odometry == "-" && arguments.source.source == "-")
     throw CLI::ValidationError("--odometry", "and --source cannot both be standard input");
   arguments.source.understand();
+  if (is_topic(arguments.odometry)) topic_from("--odometry", arguments.odometry);
   arguments.start = start_pose_from(arguments.start_pose);
 }
 

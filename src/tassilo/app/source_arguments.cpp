@@ -5,6 +5,7 @@
 #include <charconv>
 #include <stdexcept>
 
+#include "tassilo/app/topic_input.h"
 #include "tassilo/base/error.h"
 
 namespace tassilo {
@@ -93,18 +94,40 @@ CameraOptions camera_options(const SourceArguments& arguments) {
   return options;
 }
 
+/// Throws CLI::ValidationError: what it refuses is wrong usage.
+std::string understood_topic(const SourceArguments& arguments) {
+  const std::string topic = topic_from("--source", arguments.source);
+  if (!arguments.camera_info.empty()) topic_from("--camera-info", "topic:" + arguments.camera_info);
+  if (!arguments.format.empty() || !arguments.size.empty() || arguments.fps > 0)
+    throw CLI::ValidationError("--format, --size and --fps",
+                               "are what the images of a topic say, --source is " + arguments.source);
+  if (!arguments.camera_format.empty() || !arguments.exposure.empty() || !arguments.gain.empty() ||
+      !arguments.white_balance.empty())
+    throw CLI::ValidationError("--camera-format, --exposure, --gain and --white-balance",
+                               "are the driver's, --source is " + arguments.source);
+  return topic;
+}
+
 }  // namespace
+
+std::string topic_from(const std::string& option, const std::string& location) {
+  const std::string topic = topic_of(location);
+  if (!is_ros_topic_name(topic))
+    throw CLI::ValidationError(option, "names the topic " + topic + ", must be like /camera/image_raw");
+  return topic;
+}
 
 void SourceArguments::add_to(CLI::App& command) {
   command
       .add_option("-s,--source", source,
-                  "video or image file, folder of images, URL, camera such as /dev/video0, or - for standard input")
+                  "video or image file, folder of images, URL, camera such as /dev/video0, topic of ROS 2 such as "
+                  "topic:/camera/image_raw, or - for standard input")
       ->required();
   command.add_option("--format", format, "raw frames: pixel format")
       ->check(CLI::IsMember({"yuv420p", "yuv422p", "yuyv422", "uyvy422", "nv12"}));
   command.add_option("--size", size,
                      "raw frames: WIDTHxHEIGHT; camera: what is asked for, instead of the camera file's, else 640x480");
-  command.add_option("--range", range, "raw frames: color range; camera: instead of what it says")
+  command.add_option("--range", range, "raw frames: color range; camera, YUV of a topic: instead of what it says")
       ->check(CLI::IsMember({"limited", "full"}));
   command.add_option("--fps", fps, "raw frames, folders: frames per second; camera: what is asked for, else 30")
       ->check(CLI::Range(0.001, 10000.0));
@@ -114,9 +137,18 @@ void SourceArguments::add_to(CLI::App& command) {
   command.add_option("--gain", gain, "camera: auto, or its own number, instead of the gain it has now");
   command.add_option("--white-balance", white_balance,
                      "camera: auto, or a temperature [K], instead of what it has now");
+  command.add_option(
+      "--camera-info", camera_info,
+      "topic: name of its CameraInfo, which is compared with the camera file, instead of that beside it");
 }
 
 void SourceArguments::understand() {
+  if (is_topic(source)) {
+    topic = understood_topic(*this);
+    if (!range.empty()) yuv_range = range_from(range);
+    return;
+  }
+  if (!camera_info.empty()) throw CLI::ValidationError("--camera-info", "belongs to topics, --source is " + source);
   if (is_camera(source)) {
     camera = camera_options(*this);
     return;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "tassilo/base/error.h"
+#include "tassilo/message/plausible.h"
 
 namespace tassilo {
 namespace {
@@ -45,22 +46,24 @@ void TeamLog::begin_before(double t) {
   view_ = TeamView(options_);
   trails_.clear();
   ahead_.reset();
-  const double from = std::max(begin_, t - kLookBack);
-  reader_.seek(nanoseconds(from));
-  now_ = from;
+  // In whole nanoseconds: the first message is not passed over for the last digit of its time.
+  const std::int64_t from = std::max(reader_.begin_ns(), nanoseconds(t - kLookBack));
+  reader_.seek(from);
+  now_ = seconds(from);
 }
 
 TeamPicture TeamLog::at(double t) {
   t = std::clamp(t, begin_, end_);
   if (!now_ || t < *now_ || t > *now_ + kGoOn) begin_before(t);
   double next_step = *now_ + kTrailStep;
+  constexpr double last_digits = 1e-3;  // at the end all of it is heard, but not what is of no time of the log [s]
+  const double until = t < end_ ? t : end_ + last_digits;
   for (;;) {
     if (!ahead_) {
       ahead_ = reader_.next();
       if (ahead_) ahead_data_.assign(ahead_->data.begin(), ahead_->data.end());
     }
-    // At the end all of it is heard, whatever the last digit of its time.
-    if (!ahead_ || (t < end_ && seconds(ahead_->log_time_ns) > t)) break;
+    if (!ahead_ || seconds(ahead_->log_time_ns) > until) break;
     const double arrival = seconds(ahead_->log_time_ns);
     for (; next_step < arrival; next_step += kTrailStep) trails_.add(view_.picture(next_step));
     const McapChannel& channel = reader_.channels().at(ahead_->channel);
@@ -79,15 +82,26 @@ std::vector<TeamTrail> TeamLog::trails(double t, double seconds) {
   return trails_.before(t, seconds);
 }
 
+std::vector<TeamNews> TeamLog::news() const {
+  std::vector<TeamNews> news(view_.news().begin(), view_.news().end());
+  std::int64_t last = 0;
+  for (TeamNews& one : news) {
+    constexpr double per_second = 1e4;
+    one.number = last = std::max(last + 1, 1 + static_cast<std::int64_t>((one.t - begin_) * per_second));
+  }
+  return news;
+}
+
 std::optional<std::string> TeamLog::picture(int robot, double t) {
   const std::string topic = ros_topic_name(kImageTopic, robot);
   std::optional<std::string> newest;
+  t = std::clamp(t, begin_, end_);
   picture_reader_.seek(nanoseconds(std::max(begin_, t - kPictureAge)));
   while (const auto message = picture_reader_.next()) {
     if (seconds(message->log_time_ns) > t) break;
     if (picture_reader_.channels().at(message->channel).topic != topic) continue;
-    if (const auto picture = decoded<ros::CompressedImage>(message->data))
-      newest.emplace(picture->data.begin(), picture->data.end());
+    const auto picture = decoded<ros::CompressedImage>(message->data);
+    if (picture && implausible(*picture, robot).empty()) newest.emplace(picture->data.begin(), picture->data.end());
   }
   return newest;
 }

@@ -35,8 +35,9 @@ class TeamLog {
   std::vector<TeamTrail> trails(double t, double seconds);
   /// The newest annotated picture, a JPEG, of the two seconds before t; nothing when there is none.
   std::optional<std::string> picture(int robot, double t);
-  /// What happened between where it last began and where it is.
-  const std::deque<TeamNews>& news() const { return view_.news(); }
+  /// What happened between where it last began and where it is. Numbered by when it was, so that a piece of news has
+  /// the same number whenever it is come upon.
+  std::vector<TeamNews> news() const;
 
  private:
   void begin_before(double t);

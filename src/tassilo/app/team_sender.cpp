@@ -2,10 +2,10 @@
 
 #include <fmt/core.h>
 
-#include <chrono>
 #include <utility>
 
 #include "tassilo/app/annotated_picture.h"
+#include "tassilo/app/unix_clock.h"
 #include "tassilo/base/error.h"
 
 namespace tassilo {
@@ -14,7 +14,6 @@ namespace {
 constexpr std::size_t kMostWaiting = 8;  // a quarter of a second of frames
 constexpr double kEpoch = 1e9;           // later times are taken for those since the UNIX epoch: 2001 [s]
 
-double unix_now() { return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count(); }
 std::int64_t nanoseconds(double t) { return static_cast<std::int64_t>(t * 1e9); }
 
 MessageContext context_of(int robot, const RobotSetup& setup) {
@@ -57,17 +56,18 @@ std::vector<Spoken> messages_of(const Scene& scene, ros::Time stamp, const Messa
 
 TeamSender::TeamSender(const TeamSenderOptions& options) : options_(options) {
   options_.budget.check();
+  // The log last: a bus that cannot be entered leaves none behind.
+  if (options_.bus) {
+    bus_.emplace(*options_.bus);
+    voice_.emplace(*bus_, options_.robot, options_.budget,
+                   options_.reliable ? BusReliability::reliable : BusReliability::best_effort);
+  }
   if (!options_.log.empty()) {
     log_.emplace(options_.log);
     for (const Topic& topic : kTopics)
       channels_.emplace(
           topic.name,
           log_->add_channel({ros_topic_name(topic, options_.robot), topic.ros_type(), topic.definition(), {}}));
-  }
-  if (options_.bus) {
-    bus_.emplace(*options_.bus);
-    voice_.emplace(*bus_, options_.robot, options_.budget,
-                   options_.reliable ? BusReliability::reliable : BusReliability::best_effort);
   }
   thread_ = std::thread([this] { send_all(); });
 }
@@ -81,14 +81,20 @@ TeamSender::~TeamSender() {
   thread_.join();
 }
 
-void TeamSender::begin(double first_t) { offset_ = first_t > kEpoch ? 0 : unix_now() - first_t; }
+void TeamSender::begin(double first_t, bool is_live) {
+  const bool is_since_epoch = first_t > kEpoch;
+  offset_ = is_live || (is_since_epoch && !bus_) ? 0 : unix_now() - first_t;
+}
 
 void TeamSender::say(const Frame& frame, const Scene& scene, const VisionWorkspace& workspace,
                      const std::shared_ptr<const Configuration>& configuration, const Odometry* odometry,
                      std::optional<double> latency_s) {
-  const MessageContext context = context_of(options_.robot, configuration->setup);
+  MessageContext context = context_of(options_.robot, configuration->setup);
+  context.has_odometry = odometry != nullptr;
   Item item;
   item.t = scene.t + offset_;
+  constexpr double end_of_time = 2147483647;  // that a stamp can say: 2038 [s]
+  if (!(item.t >= 0 && item.t < end_of_time)) return lose(fmt::format("{} s is no time that can be told", item.t));
   const ros::Time stamp = ros_time(item.t);
   item.messages = messages_of(scene, stamp, context, odometry, configuration->vision.optics() != nullptr);
   item.state = team_state_message(scene, stamp, context);
@@ -137,21 +143,46 @@ void TeamSender::send_all() {
       else
         show(*std::exchange(picture_, std::nullopt));
     } catch (const std::exception& error) {  // the vision goes on
-      const std::lock_guard lock(mutex_);
-      if (trouble_.empty()) trouble_ = error.what();
+      lose(error.what());
     }
+    tell_complaints();
   }
 }
 
-void TeamSender::log(const Topic& topic, const Item& item, std::span<const std::byte> data) {
-  if (!log_) return;
-  {
-    const std::lock_guard lock(mutex_);
-    if (!trouble_.empty()) return;
-  }
-  log_->write(channels_.at(topic.name), item.log_time_ns, nanoseconds(item.t), data);
+/// Something was not told; the first time it is said why.
+void TeamSender::lose(const std::string& why) {
   const std::lock_guard lock(mutex_);
-  ++logged_;
+  if (lost_++ == 0) news_.push_back("not told to others: " + why);
+}
+
+/// What the middleware has to say goes to people, once each.
+void TeamSender::tell_complaints() {
+  if (!bus_) return;
+  const auto now = std::chrono::steady_clock::now();
+  if (now < next_complaints_) return;
+  next_complaints_ = now + std::chrono::seconds(1);
+  const std::lock_guard lock(mutex_);
+  for (const std::string& complaint : complaints_.news(*bus_)) news_.push_back("bus: " + complaint);
+}
+
+std::vector<std::string> TeamSender::news() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(news_, {});
+}
+
+/// What goes wrong with the log ends the log, and nothing else.
+void TeamSender::log(const Topic& topic, const Item& item, std::span<const std::byte> data) {
+  if (!log_ || has_log_failed_) return;
+  try {
+    log_->write(channels_.at(topic.name), item.log_time_ns, nanoseconds(item.t), data);
+    const std::lock_guard lock(mutex_);
+    ++logged_;
+  } catch (const Error& error) {
+    has_log_failed_ = true;
+    const std::lock_guard lock(mutex_);
+    log_trouble_ = error.what();
+    news_.push_back("the log ends here: " + log_trouble_);
+  }
 }
 
 void TeamSender::send(Item& item) {
@@ -185,8 +216,8 @@ void TeamSender::show(const Item& item) {
 void TeamSender::finish() {
   std::unique_lock lock(mutex_);
   there_is_room_.wait(lock, [&] { return queue_.empty() && !busy_ && !picture_; });
+  if (!log_trouble_.empty()) throw Error("log", log_trouble_);
   if (log_) log_->finish();
-  if (!trouble_.empty()) throw Error(log_ ? options_.log : "bus", trouble_);
 }
 
 std::string TeamSender::summary() const {
@@ -200,6 +231,7 @@ std::string TeamSender::summary() const {
   if (log_)
     text += fmt::format("log: {}, {} messages, {:.1f} MB\n", options_.log, logged_,
                         1e-6 * static_cast<double>(log_->bytes()));
+  if (lost_ > 0) text += fmt::format("{} times something could not be told\n", lost_);
   if (dropped_ > 0) text += fmt::format("{} frames were not told: sending was too slow\n", dropped_);
   return text;
 }

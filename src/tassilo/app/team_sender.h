@@ -1,9 +1,11 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -11,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "tassilo/app/bus_complaints.h"
 #include "tassilo/app/configuration_watch.h"
 #include "tassilo/message/from_scene.h"
 #include "tassilo/record/mcap_writer.h"
@@ -43,8 +46,9 @@ class TeamSender {
   TeamSender(const TeamSender&) = delete;
   TeamSender& operator=(const TeamSender&) = delete;
 
-  /// A source begins, or begins again: times on its clock that are none since the UNIX epoch begin now.
-  void begin(double first_t);
+  /// A source begins, or begins again. Of a live source its times are told; of a file, on the bus, as if it happened
+  /// now, for nobody believes in two times; in a log alone as they are, where they are since the UNIX epoch.
+  void begin(double first_t, bool is_live);
   /// One frame was seen.
   /// latency_s   from its capture until now; nothing when that is not known
   void say(const Frame& frame, const Scene& scene, const VisionWorkspace& workspace,
@@ -52,6 +56,8 @@ class TeamSender {
            std::optional<double> latency_s);
   /// All is sent, and the log complete. Throws Error when that failed.
   void finish();
+  /// What happened since the last call, for people, in lines without their ends.
+  std::vector<std::string> news();
   /// For people, lines with their ends.
   std::string summary() const;
 
@@ -74,6 +80,8 @@ class TeamSender {
   void send_all();
   void send(Item& item);
   void show(const Item& item);
+  void lose(const std::string& why);
+  void tell_complaints();
   void log(const Topic& topic, const Item& item, std::span<const std::byte> data);
 
   const TeamSenderOptions options_;
@@ -94,7 +102,13 @@ class TeamSender {
   std::int64_t dropped_ = 0;
   std::uint64_t sent_ = 0, withheld_ = 0, logged_ = 0;
   double bytes_ = 0;
-  std::string trouble_;          ///< Why the log ended early.
+  std::int64_t lost_ = 0;    ///< Messages that could not be sent, frames without a time.
+  std::string log_trouble_;  ///< Why the log ended early.
+  std::vector<std::string> news_;
+  BusComplaints complaints_;
+  // The thread's own while it is busy.
+  bool has_log_failed_ = false;
+  std::chrono::steady_clock::time_point next_complaints_{};
   std::optional<Item> picture_;  ///< To be drawn; the thread's own while it is busy.
   std::thread thread_;
 };

@@ -11,7 +11,7 @@
 #include "tassilo/geometry/point.h"
 #include "tassilo/scene/scene.h"
 
-// Ball and opponents as all robots of the team see them together. docs/decisions/0021 tells why it is done so.
+// Ball and opponents as all robots of the team see them together. docs/decisions/0022 tells why it is done so.
 
 namespace tassilo {
 

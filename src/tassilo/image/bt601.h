@@ -60,9 +60,11 @@ struct RgbView {
   const std::uint8_t* data = nullptr;
   int width = 0, height = 0;  ///< [px]
   std::ptrdiff_t stride = 0;  ///< From row to row. [bytes]
+  bool is_bgr = false;        ///< B, G, R instead.
 };
 
-/// The picture as a yuv422p frame of its own pixels. O(pixels).
+/// The picture as a yuv422p frame of its own pixels, all as Bt601 and fill_row_from_rgb give them. O(pixels), some
+/// 4 ns each.
 Frame frame_from_rgb(const RgbView& picture, ColorRange range);
 
 }  // namespace tassilo

@@ -155,6 +155,13 @@ class CdrReader {
       for (std::uint32_t i = 0; i < count && ok_; ++i) read(values.emplace_back());
     }
   }
+  /// A look at the bytes themselves.
+  void read(std::span<const std::uint8_t>& values) {
+    std::uint32_t count = 0;
+    read(count);
+    const auto* const begin = reinterpret_cast<const std::uint8_t*>(take(count));
+    values = ok_ ? std::span(begin, count) : std::span<const std::uint8_t>();
+  }
   template <class T, std::size_t n>
   void read(std::array<T, n>& values) {
     align(sizeof(T));

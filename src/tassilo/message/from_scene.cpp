@@ -237,7 +237,8 @@ ros::TFMessage transforms_message(const Scene& scene, const std::optional<Odomet
   const std::string odom = robot_frame_id(context.robot, "odom");
   ros::TFMessage message;
   if (odometry) message.transforms.push_back(transform(stamp, odom, base, {odometry->x, odometry->y}, odometry->theta));
-  if (scene.pose) {
+  // A frame has one parent: that of a robot with odometry does not change when odometry is missing for a moment.
+  if (scene.pose && (odometry || !context.has_odometry)) {
     double theta = scene.pose->theta;
     Point2<RobotFrame> at{scene.pose->x, scene.pose->y};
     if (odometry) {

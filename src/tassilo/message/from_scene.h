@@ -32,6 +32,7 @@ struct MessageContext {
   int robot = 0;  ///< 0..255
   Team team = Team::unknown;
   double ball_radius = 0.105;   ///< Height of a ball's centre above the floor. [m], > 0
+  bool has_odometry = false;    ///< If only at other times than the scene's.
   double free_space_range = 8;  ///< The furthest that was asked for. [m], > 0
   MotionOptions motion = {};    ///< How sure odometry is.
 };

@@ -115,6 +115,12 @@ TEST(TransformsMessage, WithoutOdometryTheRobotHangsOnTheMap) {
   EXPECT_EQ(message.transforms[0].child_frame_id, "robot4/base_link");
 }
 
+TEST(TransformsMessage, AFrameKeepsItsParentWhileOdometryIsMissing) {
+  Scene scene;
+  scene.pose.emplace();
+  EXPECT_TRUE(transforms_message(scene, std::nullopt, kStamp, {.robot = 4, .has_odometry = true}).transforms.empty());
+}
+
 TEST(BallsMessage, LeavesOutWhatIsOnlyInTheImage) {
   Scene scene;
   scene.balls.emplace_back();

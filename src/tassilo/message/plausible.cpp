@@ -1,6 +1,7 @@
 #include "tassilo/message/plausible.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -19,6 +20,24 @@ constexpr std::size_t kMostThings = 100;  // of a kind on one field
 constexpr std::size_t kMostLines = 1000;
 constexpr std::size_t kMostSectors = 3600;  // a tenth of a degree each
 constexpr std::size_t kLongestText = 100;   // [B]
+
+/// The character at this place of UTF-8, which is put behind it; 0 where there is none: bytes that are missing, more
+/// than needed, or half of a pair.
+char32_t next_character(std::string_view text, std::size_t& at) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(i < text.size() ? text[i] : 0); };
+  const unsigned char first = byte(at);
+  const std::size_t size = first < 0x80 ? 1 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
+  constexpr std::array<char32_t, 5> least{0, 0, 0x80, 0x800, 0x10000};
+  char32_t character = size == 1 ? first : first & (0x7f >> size);
+  bool ok = size == 1 || (first >= 0xc2 && first < 0xf5);
+  for (std::size_t i = 1; i < size; ++i) {
+    ok = ok && (byte(at + i) & 0xc0) == 0x80;
+    character = character << 6 | (byte(at + i) & 0x3f);
+  }
+  at += size;
+  ok = ok && character >= least[size] && character <= 0x10ffff && !(character >= 0xd800 && character < 0xe000);
+  return ok ? character : 0;
+}
 
 /// The first thing that is wrong is kept.
 class Check {
@@ -59,23 +78,16 @@ class Check {
     constexpr double rounding = 1e-2;
     within(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w, 1 - rounding, 1 + rounding, "the length of a rotation");
   }
-  /// Printable UTF-8 or nothing.
+  /// UTF-8 that can be shown: without control characters, and without those that turn the direction of writing.
   void text(std::string_view text, std::string_view what) {
     bool ok = text.size() <= kLongestText;
-    int following = 0;
-    for (const char character : text) {
-      const auto byte = static_cast<unsigned char>(character);
-      if (following > 0) {
-        ok = ok && (byte & 0xc0) == 0x80;
-        --following;
-      } else if (byte >= 0x80) {
-        following = byte >= 0xf0 ? 3 : byte >= 0xe0 ? 2 : 1;
-        ok = ok && byte >= 0xc2 && byte < 0xf5;
-      } else {
-        ok = ok && byte >= 0x20 && byte != 0x7f;
-      }
+    for (std::size_t at = 0; ok && at < text.size();) {
+      const char32_t character = next_character(text, at);
+      ok = character >= 0x20 && !(character >= 0x7f && character < 0xa0) && character != 0x200e &&
+           character != 0x200f && !(character >= 0x2028 && character <= 0x202e) &&
+           !(character >= 0x2066 && character <= 0x2069);
     }
-    require(ok && following == 0, std::string(what).append(" is no short text"));
+    require(ok, std::string(what).append(" is no short text"));
   }
   std::string why() { return std::move(why_); }
 

@@ -10,8 +10,8 @@
 namespace tassilo {
 
 /// Why a message of a robot is not to be believed; empty when it may be: finite where it must be, within a hall of
-/// 100 m, covariances that are some, as many things as fit on a field, text that can be shown, in the frame of this
-/// robot. Its time is judged by whoever knows what time it is.
+/// 100 m, covariances whose values are pairwise possible, as many things as fit on a field, text that can be shown, in
+/// the frame of this robot. Its time is judged by whoever knows what time it is.
 ///
 /// cost  O(size); safe from any thread
 std::string implausible(const ros::PoseWithCovarianceStamped& message, int robot);

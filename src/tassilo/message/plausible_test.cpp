@@ -79,10 +79,12 @@ TEST(Implausible, ATextCanBeShown) {
   msgs::TeamState state;
   state.header = kOfRobot3;
   state.robot = 3;
-  state.role = "Stürmer";
+  state.role = "Stürmer 前锋 🤖";
   EXPECT_THAT(implausible(state, 3), IsEmpty());
   for (const std::string& wrong :
-       {std::string("a\nb"), std::string("\xff"), std::string("\xc3"), std::string(101, 'a')}) {
+       {std::string("a\nb"), std::string("\xff"), std::string("\xc3"), std::string("\xed\xa0\x80"),
+        std::string("\xe0\x80\x80"), std::string("\xf4\x90\x80\x80"), std::string("\xc2\x80"),
+        std::string("a\xe2\x80\xae"), std::string(1, '\0'), std::string(101, 'a')}) {
     state.role = wrong;
     EXPECT_THAT(implausible(state, 3), HasSubstr("role"));
   }

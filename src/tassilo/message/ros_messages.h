@@ -2,12 +2,15 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 // The messages of ROS 2 that are spoken here, field by field as in its .msg files (common_interfaces, Humble to Jazzy),
 // which say what they mean. Lower floors have types of their own; these are for the outside.
+//
+// Images are large: borrowed ones are read without a copy, and live no longer than the bytes they were read from.
 
 namespace tassilo::ros {
 
@@ -192,11 +195,13 @@ struct LaserScan {
   }
 };
 
-struct CompressedImage {
+/// `Bytes` holds the file, or is a borrowed look at it.
+template <class Bytes>
+struct BasicCompressedImage {
   static constexpr std::string_view kType = "sensor_msgs/CompressedImage";
   Header header;
-  std::string format;              ///< "jpeg", "png"; more may follow after a ";".
-  std::vector<std::uint8_t> data;  ///< The file.
+  std::string format;  ///< "jpeg", "png"; more may follow after a ";".
+  Bytes data;          ///< The file.
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("header", self.header);
@@ -204,15 +209,19 @@ struct CompressedImage {
     visit("data", self.data);
   }
 };
+using CompressedImage = BasicCompressedImage<std::vector<std::uint8_t>>;
+using BorrowedCompressedImage = BasicCompressedImage<std::span<const std::uint8_t>>;
 
-struct Image {
+/// `Bytes` holds the pixels, or is a borrowed look at them.
+template <class Bytes>
+struct BasicImage {
   static constexpr std::string_view kType = "sensor_msgs/Image";
   Header header;
   std::uint32_t height = 0, width = 0;  ///< [px]
   std::string encoding;
   std::uint8_t is_bigendian = 0;
   std::uint32_t step = 0;  ///< From row to row. [B]
-  std::vector<std::uint8_t> data;
+  Bytes data;
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("header", self.header);
@@ -224,6 +233,8 @@ struct Image {
     visit("data", self.data);
   }
 };
+using Image = BasicImage<std::vector<std::uint8_t>>;
+using BorrowedImage = BasicImage<std::span<const std::uint8_t>>;
 
 struct RegionOfInterest {
   static constexpr std::string_view kType = "sensor_msgs/RegionOfInterest";

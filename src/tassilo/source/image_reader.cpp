@@ -1,12 +1,6 @@
-extern "C" {
-#include <libavcodec/avcodec.h>
-#include <libavutil/mem.h>
-}
-
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <string_view>
@@ -14,15 +8,12 @@ extern "C" {
 #include "tassilo/base/error.h"
 #include "tassilo/source/internal/av_support.h"
 #include "tassilo/source/internal/frame_reader.h"
+#include "tassilo/source/internal/picture_bytes.h"
 
 namespace tassilo {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::string_view kPngStart = "\x89PNG\r\n\x1a\n";
-constexpr std::string_view kJpegStart = "\xff\xd8\xff";
-constexpr std::string_view kJpegEnd = "\xff\xd9";
 
 std::string read_all(const fs::path& path) {
   std::ifstream file(path, std::ios::binary | std::ios::ate);
@@ -32,35 +23,6 @@ std::string read_all(const fs::path& path) {
   if (!file.read(bytes.data(), static_cast<std::streamsize>(bytes.size())))
     throw Error(path.string(), "cannot be read");
   return bytes;
-}
-
-/// One picture out of the bytes of a PNG or JPEG file, or an Error naming it.
-AvFrame decode_image(const std::string& name, const std::string& bytes) {
-  AVCodecParameters stream{};
-  stream.codec_type = AVMEDIA_TYPE_VIDEO;
-  stream.format = AV_PIX_FMT_NONE;
-  if (bytes.starts_with(kPngStart))
-    stream.codec_id = AV_CODEC_ID_PNG;
-  else if (bytes.starts_with(kJpegStart))
-    stream.codec_id = AV_CODEC_ID_MJPEG;
-  else
-    throw Error(name, bytes.empty() ? "is empty, must be a PNG or JPEG image" : "is no PNG or JPEG image");
-  // The decoder fills up a JPEG without its end in gray, silently.
-  if (stream.codec_id == AV_CODEC_ID_MJPEG && bytes.rfind(kJpegEnd) == std::string::npos)
-    throw Error(name, "is cut short: a JPEG image without its end");
-
-  const AvLog log;
-  const AvCodec codec = open_decoder(name, stream, 1);
-  const AvPacket packet = make_av_packet();
-  if (av_new_packet(packet.get(), static_cast<int>(bytes.size())) < 0) throw std::bad_alloc();
-  std::memcpy(packet->data, bytes.data(), bytes.size());
-  AvFrame picture = make_av_frame();
-  int code = avcodec_send_packet(codec.get(), packet.get());
-  if (code >= 0) code = avcodec_send_packet(codec.get(), nullptr);
-  if (code >= 0) code = avcodec_receive_frame(codec.get(), picture.get());
-  // An error line without an error code is a picture with missing parts.
-  if (code < 0 || !log.decoder_error().empty()) throw Error(name, log.explain("is damaged or cut short"));
-  return picture;
 }
 
 /// Lower-case, with its dot.
@@ -128,16 +90,13 @@ class ImageReader final : public FrameReader {
     if (next_ == files_.size() || (interrupted_ && interrupted_())) return std::nullopt;
     const fs::path& file = files_[next_];
     const std::string bytes = read_all(file);
-    AvFrame picture = decode_image(file.string(), bytes);
-    const bool is_png = bytes.starts_with(kPngStart);
+    AvFrame picture = decode_image({file.string(), range_}, bytes);
     const std::string layout = av_format_name(*picture);
-    Frame frame =
-        frame_from_av(std::move(picture),
-                      {.name = file.string(), .images_range = range_, .untagged_is_full = true, .gray_is_rgb = is_png});
+    Frame frame = frame_from_picture(std::move(picture), {file.string(), range_}, bytes);
     frame.index = static_cast<std::int64_t>(next_);
     frame.t = static_cast<double>(next_) / fps_;
     frame.image = file.filename().string();
-    if (next_ == 0) pixels_ = (is_png ? "PNG, " : "JPEG, ") + describe_pixels(layout, frame);
+    if (next_ == 0) pixels_ = (bytes.starts_with(kPngStart) ? "PNG, " : "JPEG, ") + describe_pixels(layout, frame);
     ++next_;
     return frame;
   }

@@ -9,7 +9,7 @@ namespace {
 
 /// Frames come a little early or late; what is due within so much of its period is due. [1]
 constexpr double kJitter = 0.3;
-constexpr double kLeftForMessages = 0.25;  // [s]
+constexpr double kLeftForMessages = 0.25;  // share of the bytes [1]
 constexpr double kCredit = 10'000;         // two seconds of states [B]
 
 }  // namespace
@@ -50,29 +50,41 @@ bool MessageBudget::is_picture_due(double now) const {
   return due == due_.end() || now >= due->second - kJitter * period_of(kImageTopic.name);
 }
 
-bool MessageBudget::allows(const Topic& topic, std::size_t bytes, double now) {
+void MessageBudget::fill(double now) {
   const double whole = options_.bytes_per_second;  // of one second
-  if (!has_begun_) left_ = whole;
+  constexpr double clock_was_set = 1;              // [s]
+  if (!has_begun_ || now < filled_at_ - clock_was_set) {
+    left_ = whole;
+    due_.clear();
+  } else {
+    // What a picture took is paid in rates that leave something to messages.
+    const double more = whole * std::max(0., now - filled_at_);
+    const double paid = std::min(picture_debt_, (1 - kLeftForMessages) * more);
+    picture_debt_ -= paid;
+    left_ = std::min(whole, left_ + more - paid);
+  }
   has_begun_ = true;
-  left_ = std::min(whole, left_ + whole * std::max(0., now - filled_at_));
   filled_at_ = now;
+}
 
+bool MessageBudget::allows(const Topic& topic, std::size_t bytes, double now) {
+  fill(now);
   const bool is_picture = topic.name == kImageTopic.name;
-  const double period = period_of(topic.name);
+  const double size = static_cast<double>(bytes), period = period_of(topic.name);
   const auto [due, is_first] = due_.try_emplace(std::string(topic.name), now);
   const bool is_due = is_picture ? is_picture_due(now) : now >= due->second - kJitter * period;
-  // A picture may be larger than all of a second: then it waits until a whole second's bytes are there. And that
-  // messages are withheld must be told, so a state is said on credit.
-  double least = std::min(static_cast<double>(bytes) + (is_picture ? kLeftForMessages * whole : 0), whole);
-  if (topic.name == kTeamStateTopic.name) least = -kCredit;
-  if (!is_due || left_ < least) {
+  // That messages are withheld must be told, so a state is said on credit.
+  const bool is_affordable = is_picture                           ? picture_debt_ <= 0
+                             : topic.name == kTeamStateTopic.name ? left_ >= size - kCredit
+                                                                  : left_ >= size;
+  if (!is_due || !is_affordable) {
     ++withheld_;
     return false;
   }
   // On average at the rate, but no burst after a silence.
   due->second = std::max(due->second, now - period) + period;
-  left_ -= static_cast<double>(bytes);
-  bytes_.add(now, static_cast<double>(bytes));
+  (is_picture ? picture_debt_ : left_) += is_picture ? size : -size;
+  bytes_.add(now, size);
   return true;
 }
 

@@ -29,12 +29,14 @@ double usual_rate(std::string_view topic);
 /// Decides what is said: each topic at its rate, all together within the bytes.
 ///
 /// A message that comes too soon after the one before is withheld, so a rate is an upper bound, kept on average. Bytes
-/// that were not used are kept for a second. Pictures leave a quarter of a second's bytes to messages.
+/// that were not used are kept for a second. A picture is sent whole, however large, and paid from three quarters of
+/// the bytes that follow; until then there is no other one.
 class MessageBudget {
  public:
   explicit MessageBudget(const BudgetOptions& options);
 
-  /// May a message of so many bytes be said now? Counts it, whatever the answer. Times grow. [s]
+  /// May a message of so many bytes be said now? Counts it, whatever the answer. Times grow; when they go back by more
+  /// than a second, it begins anew. [s]
   bool allows(const Topic& topic, std::size_t bytes, double now);
   /// Is it time for a picture?
   bool is_picture_due(double now) const;
@@ -44,10 +46,12 @@ class MessageBudget {
 
  private:
   double period_of(std::string_view topic) const;
+  void fill(double now);
 
   BudgetOptions options_;
   std::map<std::string, double, std::less<>> due_;  ///< When the next one of a topic is. [s]
-  double left_ = 0;                                 ///< [B]
+  double left_ = 0;                                 ///< For messages. [B]
+  double picture_debt_ = 0;                         ///< Of the last picture, not yet paid. [B]
   double filled_at_ = 0;                            ///< [s]
   bool has_begun_ = false;
   std::uint64_t withheld_ = 0;

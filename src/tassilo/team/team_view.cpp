@@ -132,10 +132,7 @@ bool TeamView::take(Member& member, const Heard& heard, const Topic& topic) {
     case ClockOffset::Verdict::plausible:
       break;
     case ClockOffset::Verdict::was_set:
-      tell(heard.arrival, member.told.id, "its clock was set");
-      member.topics.clear();
-      member.tallies.clear();
-      member.told.scene.t = 0;
+      forget_times(member, heard.arrival);
       break;
     case ClockOffset::Verdict::too_old:
       return refuse(member, heard, std::string(topic.name) + ": is too old");
@@ -144,9 +141,6 @@ bool TeamView::take(Member& member, const Heard& heard, const Topic& topic) {
   }
   member.messages.add(heard.arrival, 1);
   member.bytes.add(heard.arrival, static_cast<double>(heard.data.size()));
-  if (heard.arrival - member.last_heard > options_.forget_s) tell(heard.arrival, member.told.id, "appeared");
-  member.last_heard = std::max(member.last_heard, heard.arrival);
-
   OfTopic& of_topic = member.topics[topic.name];
   std::deque<std::int64_t>& stamps = of_topic.stamps;
   const std::int64_t time = nanoseconds_of(stamp);
@@ -161,8 +155,13 @@ bool TeamView::take(Member& member, const Heard& heard, const Topic& topic) {
   if (stamps.size() > kRemembered) stamps.pop_front();
   if (!is_newest) {
     ++counts_.late;
+    note_late(member, seconds_of(stamp), heard.arrival);
     return true;
   }
+  member.late.reset();
+  // What is late, or was heard before, is no sign of life: a link may bring it long after.
+  if (heard.arrival - member.last_heard > options_.forget_s) tell(heard.arrival, member.told.id, "appeared");
+  member.last_heard = std::max(member.last_heard, heard.arrival);
   of_topic.heard_at = heard.arrival;
   member.told.message_age = member.clock.delay(seconds_of(stamp), heard.arrival);
   member.told.scene.t = std::max(member.told.scene.t, seconds_of(stamp) - *member.clock.ahead());
@@ -170,8 +169,33 @@ bool TeamView::take(Member& member, const Heard& heard, const Topic& topic) {
   return true;
 }
 
+/// A clock that was set back by less than messages may be late looks like that: all are older than those before, and as
+/// late as each other.
+void TeamView::note_late(Member& member, double stamp, double arrival) {
+  constexpr int witnesses = 10;
+  constexpr double testimony = 0.5, agree = 1;  // [s]
+  const double apparent = arrival - stamp;
+  if (!member.late || std::abs(apparent - member.late->apparent) > agree) member.late = Late{arrival, apparent, 0};
+  if (++member.late->count < witnesses || arrival - member.late->first < testimony) return;
+  member.clock = ClockOffset{};
+  forget_times(member, arrival);
+}
+
+void TeamView::forget_times(Member& member, double arrival) {
+  tell(arrival, member.told.id, "its clock was set");
+  member.topics.clear();
+  member.tallies.clear();
+  member.late.reset();
+  member.told.scene.t = 0;
+}
+
 void TeamView::keep(Member& member, const ros::PoseWithCovarianceStamped& message, double) {
-  member.told.scene.pose = pose_from(message);
+  PoseSeen pose = pose_from(message);
+  // Its state, which comes beside it, tells more of it.
+  pose.kind = member.told.pose_kind.value_or(pose.kind);
+  pose.age = member.told.pose_age.value_or(pose.age);
+  pose.mirror = member.is_mirrored;
+  member.told.scene.pose = pose;
 }
 void TeamView::keep(Member& member, const msgs::BallArray& message, double) {
   member.told.scene.balls = balls_from(message);
@@ -202,6 +226,7 @@ void TeamView::keep(Member& member, const msgs::TeamState& message, double arriv
   told.planning_state = message.planning_state;
   told.pose_kind = pose_kind_from(message.pose_kind);
   told.pose_age = told.pose_kind ? std::optional(message.pose_age) : std::nullopt;
+  member.is_mirrored = message.pose_is_mirrored;
   if (!told.pose_kind) told.scene.pose.reset();
   if (told.scene.pose) {
     told.scene.pose->kind = *told.pose_kind;

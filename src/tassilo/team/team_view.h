@@ -111,6 +111,11 @@ class TeamView {
     std::deque<std::int64_t> stamps;  ///< Of the last ones, rising. [ns]
     double heard_at = -1e9;           ///< Arrival of the newest.
   };
+  struct Late {
+    double first = 0;  ///< Arrival. [s]
+    double apparent = 0;
+    int count = 0;
+  };
   struct Member {
     TeamMember told;
     std::string sender;         ///< Who is believed: the first one, until it is silent.
@@ -123,7 +128,8 @@ class TeamView {
     RateMeter messages, bytes;
     double refused_at = -1e9, clock_refused_at = -1e9;
     std::string refusal;  ///< The last one, in words.
-    bool is_announced_off = false, is_announced_double = false;
+    bool is_announced_off = false, is_announced_double = false, is_mirrored = false;
+    std::optional<Late> late;  ///< Those in a row that were older than the newest.
   };
 
   bool hear_of_robot(const Heard& heard, const RobotTopic& topic);
@@ -139,6 +145,8 @@ class TeamView {
   void keep(Member& member, const msgs::FreeSpace& message, double arrival);
   void keep(Member& member, const msgs::TeamState& message, double arrival);
   void keep(Member& member, const ros::Odometry& message, double arrival);
+  void note_late(Member& member, double stamp, double arrival);
+  void forget_times(Member& member, double arrival);
   bool refuse(Member& member, const Heard& heard, std::string why);
   void tell(double t, int robot, std::string text);
   void watch(int id, Member& member, double now);

@@ -215,6 +215,47 @@ TEST(TeamView, AClockTenMinutesOffIsTold) {
   EXPECT_TRUE(was_told(view, "600.0 s ahead"));
 }
 
+class AClockThatWasSet : public testing::TestWithParam<double> {};
+
+TEST_P(AClockThatWasSet, IsFollowedWithinASecond) {
+  TeamView view;
+  for (int i = 0; i < 60; ++i)
+    for (const Packet& packet : packets_of(3, kStart + i / 30., "a")) hear(view, packet);
+  for (int i = 60; i < 105; ++i)
+    for (const Packet& packet : packets_of(3, kStart + i / 30., "a", GetParam())) hear(view, packet);
+  const TeamPicture picture = view.picture(kStart + 3.5);
+  const TeamMember& member = picture.members[0];
+  EXPECT_NEAR(member.scene.pose->x, 104 / 30., 1e-6) << "what it says now is known";
+  EXPECT_NEAR(*member.clock_ahead, GetParam(), 0.1);
+  EXPECT_EQ(member.presence, Presence::here);
+  EXPECT_TRUE(was_told(view, "its clock was set"));
+}
+INSTANTIATE_TEST_SUITE_P(By, AClockThatWasSet, testing::Values(-3600., -9.01, -5.01, -1.51, 1.51, 5.01, 3600.));
+
+TEST(TeamView, WhatIsLateOrRepeatedIsNoSignOfLife) {
+  TeamView view;
+  std::vector<Packet> old;
+  for (int i = 0; i < 5; ++i)
+    for (Packet& packet : packets_of(3, kStart + i / 30., "a")) {
+      hear(view, packet);
+      old.push_back(std::move(packet));
+    }
+  for (int round = 0; round < 4; ++round)
+    for (Packet& packet : old) {
+      packet.arrival = kStart + 1 + 0.5 * round;
+      hear(view, packet);
+    }
+  EXPECT_EQ(view.picture(kStart + 2.6).members[0].presence, Presence::stale);
+}
+
+TEST(TeamView, AStateTellsMoreOfEachPose) {
+  TeamView view;
+  const std::vector<Packet> first = packets_of(3, kStart, "a");
+  for (const Packet& packet : first) hear(view, packet);
+  for (int i = 1; i < 5; ++i) hear(view, packets_of(3, kStart + i / 30., "a")[0]);  // poses without states
+  EXPECT_EQ(view.picture(kStart + .2).members[0].scene.pose->kind, PoseKind::two_lines);
+}
+
 TEST(TeamView, GarbageIsCountedToldAndHarmsNobody) {
   std::mt19937 random(5);
   TeamView view;

@@ -1,26 +1,15 @@
 #pragma once
 
 #include <memory>
-#include <optional>
+#include <string>
+#include <string_view>
 
 #include "tassilo/image/frame.h"
+#include "tassilo/source/frame_reader.h"
 #include "tassilo/source/frame_source.h"
 #include "tassilo/source/internal/system_calls.h"
 
 namespace tassilo {
-
-/// What each kind of source does: see FrameSource, which reads ahead for SourceInfo and remembers end and damage.
-class FrameReader {
- public:
-  virtual ~FrameReader() = default;
-  /// Not called again after it returned nothing or threw.
-  virtual std::optional<Frame> next() = 0;
-  /// Name, description, frame count and live; the rest is read off the first frame. Asked after that frame was read.
-  virtual SourceInfo info() const = 0;
-  /// Of a camera.
-  virtual CameraCounts counts() const { return {}; }
-  virtual std::optional<double> now() const { return std::nullopt; }
-};
 
 inline constexpr int kMaxFrameSize = 32767;  ///< Runs have 16-bit coordinates. [px]
 

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <embree3/rtcore.h>
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "tassilo/sim/internal/stage.h"
+
+namespace tassilo {
+
+/// Embree's objects, released in time.
+struct RtcRelease {
+  void operator()(RTCDeviceTy* device) const { rtcReleaseDevice(device); }
+  void operator()(RTCSceneTy* scene) const { rtcReleaseScene(scene); }
+  void operator()(RTCGeometryTy* geometry) const { rtcReleaseGeometry(geometry); }
+};
+using RtcDevice = std::unique_ptr<RTCDeviceTy, RtcRelease>;
+using RtcScene = std::unique_ptr<RTCSceneTy, RtcRelease>;
+using RtcGeometry = std::unique_ptr<RTCGeometryTy, RtcRelease>;
+
+/// A sphere, or an upright cylinder with its top.
+struct MovingPart {
+  enum class Shape { sphere, cylinder };
+  Shape shape = Shape::sphere;
+  float x = 0, y = 0, z = 0;  ///< Middle of a sphere; of a cylinder's bottom. [m]
+  float radius = 0, height = 0;
+  int object = 0;  ///< As SimView has it.
+  Light paint = Light::Zero(), band = Light::Zero();
+  float band_low = 2, band_high = 2;  ///< Of the height; there it shows `band`.
+  std::uint8_t label = 0, band_label = 0;
+  float gloss = 0;
+};
+
+/// Eight rays through the stage and what moves on it.
+class RayWorld {
+ public:
+  explicit RayWorld(const Stage& stage);
+
+  /// Where everything stands from now on. Allocates only when there are more parts than ever before.
+  void place(std::span<const MovingPart> parts);
+
+  /// The nearest hits. instID of moving parts is their index; others have RTC_INVALID_GEOMETRY_ID there.
+  void intersect(const int* valid, RTCRayHit8& rays) const;
+  /// tfar becomes negative where something is in the way.
+  void occluded(const int* valid, RTCRay8& rays, bool by_stage, bool by_parts) const;
+  /// A part alone.
+  void intersect_part(const int* valid, const MovingPart& part, RTCRayHit8& rays) const;
+
+ private:
+  RtcScene new_scene(RTCSceneFlags flags) const;
+
+  RtcDevice device_;
+  RtcScene stage_, moving_, sphere_, cylinder_;
+  std::vector<RtcGeometry> instances_;
+  std::vector<MovingPart::Shape> shapes_;
+};
+
+}  // namespace tassilo

@@ -1,0 +1,810 @@
+#include "tassilo/sim/renderer.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <span>
+#include <string>
+
+#include "tassilo/base/contract.h"
+#include "tassilo/base/error.h"
+#include "tassilo/geometry/pose2.h"
+#include "tassilo/sim/internal/floor_marks.h"
+#include "tassilo/sim/internal/lighting.h"
+#include "tassilo/sim/internal/ray_world.h"
+#include "tassilo/sim/internal/sensor.h"
+#include "tassilo/sim/internal/stage.h"
+
+namespace tassilo {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr int kLanes = 8;
+constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+constexpr float kLift = 1e-3F;  ///< Shadow rays start so far from surfaces. [m]
+constexpr int kGrainSize = 256;
+constexpr std::uint16_t kSkyBit = 1;
+
+// Objects of a view: 0 nothing that counts, 1 ball, then goals, then robots.
+constexpr int kBallObject = 1, kGoalObject = 2, kRobotObject = 16;
+
+void check_between(const char* option, double value, double low, double high) {
+  if (!(value >= low && value <= high))
+    throw Error(std::string("render.") + option,
+                "is " + std::to_string(value) + ", must be " + std::to_string(low) + " .. " + std::to_string(high));
+}
+
+std::uint64_t mixed(std::uint64_t v) {  // splitmix64
+  v += 0x9E3779B97F4A7C15U;
+  v = (v ^ (v >> 30U)) * 0xBF58476D1CE4E5B9U;
+  v = (v ^ (v >> 27U)) * 0x94D049BB133111EBU;
+  return v ^ (v >> 31U);
+}
+
+/// Directions of rays in the robot frame, eight beside each other; NaN where the camera shows nothing.
+struct RayTable {
+  struct alignas(32) Packet {
+    float x[kLanes], y[kLanes], z[kLanes];
+  };
+  std::vector<Packet> packets;  ///< By rows, rows filled up.
+
+  RayTable(const MountedCamera& camera, double column_offset, double row_offset) {
+    const int width = camera.model().width, height = camera.model().height;
+    for (int r = 0; r < height; ++r)
+      for (int first = 0; first < width; first += kLanes) {
+        Packet packet;
+        for (int k = 0; k < kLanes; ++k) {
+          const auto ray = first + k < width ? camera.ray({first + k + column_offset, r + row_offset}) : std::nullopt;
+          packet.x[k] = ray ? static_cast<float>(ray->x) : kNone;
+          packet.y[k] = ray ? static_cast<float>(ray->y) : kNone;
+          packet.z[k] = ray ? static_cast<float>(ray->z) : kNone;
+        }
+        packets.push_back(packet);
+      }
+  }
+};
+
+/// Where a pixel's square is looked at; none for its centre alone. Steps of the golden ratio beside even ones: edges of
+/// any direction, level and upright ones too, have about as many steps as there are places.
+std::vector<PixelPoint> sub_pixels(int count) {
+  std::vector<PixelPoint> places;
+  if (count == 1) return places;
+  double mean = 0;
+  for (int k = 0; k < count; ++k) {
+    places.push_back({(k + .5) / count - .5, std::fmod(.5 + k * .6180339887498949, 1) - .5});
+    mean += places.back().y / count;
+  }
+  for (PixelPoint& place : places) place.y -= mean;
+  return places;
+}
+
+/// What a step of one pixel is on the floor, robot frame; large where the floor is not seen. [m]
+struct Footprint {
+  float cx, cy, rx, ry;
+};
+
+std::vector<Footprint> footprints_of(const MountedCamera& camera) {
+  std::vector<Footprint> footprints;
+  const auto step = [&](PixelPoint a, PixelPoint b) {
+    const auto p = camera.floor_point(a), q = camera.floor_point(b);
+    return p && q ? *q - *p : FloorPoint{30, 30};
+  };
+  for (int r = 0; r < camera.model().height; ++r)
+    for (int c = 0; c < camera.model().width; ++c) {
+      const FloorPoint column = step({c - .5, double(r)}, {c + .5, double(r)}),
+                       row = step({double(c), r - .5}, {double(c), r + .5});
+      footprints.push_back({static_cast<float>(column.x), static_cast<float>(column.y), static_cast<float>(row.x),
+                            static_cast<float>(row.y)});
+    }
+  return footprints;
+}
+
+/// Brightness of carpet by place: tufts and a coarser pattern, a tile that repeats. Mean 0, about -1..1.
+std::vector<float> carpet_grain(std::uint64_t seed) {
+  std::mt19937_64 engine(seed ^ 0xCA59E7U);
+  const auto unit = [&] { return static_cast<float>(static_cast<double>(engine() >> 11U) * 0x1p-53 * 2 - 1); };
+  std::vector<float> grain(kGrainSize * kGrainSize), coarse(32 * 32);
+  for (float& v : coarse) v = unit();
+  for (int r = 0; r < kGrainSize; ++r)
+    for (int c = 0; c < kGrainSize; ++c) {
+      const float x = static_cast<float>(c) / 8, y = static_cast<float>(r) / 8;
+      const int cx = c / 8, cy = r / 8;
+      const float fx = x - static_cast<float>(cx), fy = y - static_cast<float>(cy);
+      const auto at = [&](int i, int j) {
+        return coarse[static_cast<std::size_t>((cy + j) % 32 * 32 + (cx + i) % 32)];
+      };
+      const float smooth =
+          (at(0, 0) * (1 - fx) + at(1, 0) * fx) * (1 - fy) + (at(0, 1) * (1 - fx) + at(1, 1) * fx) * fy;
+      grain[static_cast<std::size_t>(r * kGrainSize + c)] = .65F * unit() + .5F * smooth;
+    }
+  return grain;
+}
+
+ColorClass class_named(const std::string& name, ColorClass otherwise) {
+  return color_class_from(name).value_or(otherwise);
+}
+
+/// Where a state's things are some time later or earlier, as they move.
+SimState moved(const SimState& state, double dt) {
+  SimState out = state;
+  out.ball.at = out.ball.at + dt * FieldPoint{state.ball.vx, state.ball.vy};
+  for (SimRobot& robot : out.robots) {
+    const double middle = robot.theta + .5 * dt * robot.turn;
+    robot.at = robot.at + dt * robot.speed * FieldPoint{std::cos(middle), std::sin(middle)};
+    robot.theta += dt * robot.turn;
+  }
+  return out;
+}
+
+}  // namespace
+
+void RenderOptions::check() const {
+  check_between("ambient", ambient, 0, 1);
+  check_between("exposure", exposure, 1e-3, 1e3);
+  check_between("shot_noise", shot_noise, 0, 1);
+  check_between("read_noise", read_noise, 0, 1);
+  check_between("vignetting", vignetting, 0, 1);
+  check_between("blur_px", blur_px, 0, 8);
+  check_between("shutter", shutter, 0, .2);
+  check_between("sub_frames", sub_frames, 1, 64);
+  check_between("carpet", carpet, 0, 1);
+  check_between("clutter", clutter, 0, 1);
+  check_between("people", people, 0, 1);
+  check_between("rays_per_side", rays_per_side, 1, 8);
+  for (const SimLamp& lamp : lamps) {
+    check_between("lamp.x", lamp.x, -1e3, 1e3);
+    check_between("lamp.y", lamp.y, -1e3, 1e3);
+    check_between("lamp.z", lamp.z, .01, 1e3);
+    check_between("lamp.intensity", lamp.intensity, 0, 1e3);
+    check_between("lamp.temperature", lamp.temperature, 1500, 15000);
+    check_between("lamp.radius", lamp.radius, 0, 100);
+  }
+  if (format != PixelFormat::yuv422p && format != PixelFormat::yuv420p)
+    throw Error("render.format", "is " + std::string(to_string(format)) + ", must be yuv422p or yuv420p");
+}
+
+RenderOptions fast_rendering() {
+  RenderOptions options;
+  options.quality = RenderQuality::fast;
+  options.rays_per_side = 1;
+  return options;
+}
+
+RenderOptions plain_rendering() {
+  RenderOptions options;
+  options.shot_noise = options.read_noise = options.vignetting = options.blur_px = 0;
+  options.carpet = options.clutter = options.people = 0;
+  return options;
+}
+
+RobotLook robot_look(const SimRobot& robot, const FieldModel& field) {
+  RobotLook look;
+  look.body = class_named(field.robots.body, ColorClass::black);
+  if (robot.team != Team::unknown && std::ranges::count(field.robots.markers, to_string(robot.team)) > 0)
+    look.marker = class_named(std::string(to_string(robot.team)), ColorClass::cyan);
+  const double odd = std::fmod(robot.id * .618034, 1);
+  look.marker_low = (.40 + .18 * odd) * robot.height;
+  look.marker_high = (.84 + .10 * odd) * robot.height;
+  if (robot.id % 4 == 2) look.mast = .24 * robot.height;
+  return look;
+}
+
+class Renderer::Work {
+ public:
+  Work(const FieldModel& field, const MountedCamera& camera, const RenderOptions& options)
+      : field_(field),
+        camera_(camera),
+        options_(options),
+        stage_(make_stage(field, {options.clutter, options.people, options.ball_colored_people, options.seed})),
+        world_(stage_),
+        lighting_(stage_, world_, options),
+        marks_(field),
+        sensor_(camera.model(), options),
+        centers_(camera, 0, 0),
+        footprints_(footprints_of(camera)),
+        grain_(carpet_grain(options.seed)) {
+    for (const PixelPoint& offset : sub_pixels(options.rays_per_side * options.rays_per_side))
+      tables_.emplace_back(camera, offset.x, offset.y);
+    const auto pixels = static_cast<std::size_t>(width()) * static_cast<std::size_t>(height());
+    light_.resize(pixels, Light::Zero());
+    objects_.resize(pixels);
+    for (int k = 0; k < static_cast<int>(field.goals.size()); ++k)
+      goals_.push_back(std::make_unique<RayWorld>(make_goal(field, k)));
+    const double cell = .1;
+    near_x0_ = static_cast<float>(stage_.carpet_x.low - 1);
+    near_y0_ = static_cast<float>(stage_.carpet_y.low - 1);
+    near_columns_ = static_cast<int>((stage_.carpet_x.high - stage_.carpet_x.low + 2) / cell) + 1;
+    near_rows_ = static_cast<int>((stage_.carpet_y.high - stage_.carpet_y.low + 2) / cell) + 1;
+    near_.resize(static_cast<std::size_t>(near_columns_) * static_cast<std::size_t>(near_rows_));
+    hall_floor_ = Light(.09F, .088F, .085F, 0);
+    green_ = paint_of(ColorClass::green);
+    white_ = 1.04F * paint_of(ColorClass::white);
+  }
+
+  const RenderOptions& options() const { return options_; }
+
+  void set_light(const std::vector<SimLamp>& lamps, double exposure) {
+    RenderOptions changed = options_;
+    changed.lamps = lamps;
+    changed.exposure = exposure;
+    changed.check();
+    const bool same = lamps == options_.lamps;
+    options_ = std::move(changed);
+    if (same) return;
+    world_.place({});
+    lighting_ = Lighting(stage_, world_, options_);
+  }
+
+  Frame render(const SimState& state, int observer) {
+    const int moments = options_.shutter > 0 ? options_.sub_frames : 1;
+    std::fill(light_.begin(), light_.end(), Light::Zero());
+    const int samples = std::max<int>(1, static_cast<int>(tables_.size()));
+    const float weight = 1.F / static_cast<float>(moments * samples);
+    for (int m = 0; m < moments; ++m) {
+      set_scene(moments == 1 ? state : moved(state, ((m + .5) / moments - .5) * options_.shutter), observer);
+      for (int s = 0; s < samples; ++s)
+        add_light(tables_.empty() ? centers_ : tables_[static_cast<std::size_t>(s)], m * samples + s, weight);
+    }
+    FrameBuffer buffer = free_buffer();
+    sensor_.develop(light_, mixed(options_.seed) ^ mixed(std::bit_cast<std::uint64_t>(state.t)), options_, buffer);
+    buffer.frame.t = state.t;
+    return buffer.frame;
+  }
+
+  const SimView& look(const SimState& state, int observer) {
+    set_scene(state, observer);
+    view_.width = width();
+    view_.height = height();
+    view_.labels.assign(objects_.size(), 0);
+    view_.ball = {};
+    view_.goals.assign(field_.goals.size(), {});
+    view_.robots.assign(state.robots.size(), {});
+    const auto visibility = [&](int object) -> SimVisibility* {
+      if (object == kBallObject) return &view_.ball;
+      if (object >= kRobotObject) return &view_.robots[static_cast<std::size_t>(object - kRobotObject)];
+      if (object >= kGoalObject) return &view_.goals[static_cast<std::size_t>(object - kGoalObject)];
+      return nullptr;
+    };
+    const int per_row = packets_per_row();
+    for (int r = 0; r < height(); ++r)
+      for (int p = 0; p < per_row; ++p) {
+        const std::size_t index = static_cast<std::size_t>(r * per_row + p);
+        RTCRayHit8 rays;
+        const std::array<int, kLanes> valid = aim(centers_.packets[index], rays);
+        world_.intersect(valid.data(), rays);
+        for (int k = 0; k < kLanes; ++k) {
+          const int c = p * kLanes + k;
+          if (c >= width()) break;
+          const Seen seen = what(rays, k);
+          view_.labels[static_cast<std::size_t>(r * width() + c)] = seen.label;
+          if (SimVisibility* of = visibility(seen.object)) {
+            ++of->visible_px;
+            extend(of->box, c, r);
+          }
+        }
+        add_silhouettes(index, p * kLanes, r);
+      }
+    return view_;
+  }
+
+ private:
+  struct Seen {
+    int object = 0;
+    std::uint8_t label = 0;
+  };
+  /// Where light comes from for one lane of a packet.
+  struct Point {
+    Vector3f at, normal;
+    Light albedo, glow;  ///< glow: light that needs no lamp at this time.
+    float gloss;
+    std::uint16_t near = 0;  ///< Bits of what may darken this place of the floor.
+    enum Kind { none, done, floor_near, solid } kind;
+  };
+
+  int width() const { return camera_.model().width; }
+  int height() const { return camera_.model().height; }
+  int packets_per_row() const { return (width() + kLanes - 1) / kLanes; }
+
+  void set_scene(const SimState& state, int observer) {
+    const auto self = std::ranges::find(state.robots, observer, &SimRobot::id);
+    expects(self != state.robots.end(), "Renderer: the observer is a robot of the state");
+    pose_ = make_pose2<FieldFrame, RobotFrame>(self->at.x, self->at.y, self->theta);
+    const FieldPoint eye = pose_ * FloorPoint{camera_.mount().x, camera_.mount().y};
+    eye_ = {static_cast<float>(eye.x), static_cast<float>(eye.y), static_cast<float>(camera_.mount().z)};
+    cos_ = static_cast<float>(pose_.cos);
+    sin_ = static_cast<float>(pose_.sin);
+
+    parts_.clear();
+    const ColorClass ball = class_named(field_.ball.color, ColorClass::red);
+    parts_.push_back({.shape = MovingPart::Shape::sphere,
+                      .x = static_cast<float>(state.ball.at.x),
+                      .y = static_cast<float>(state.ball.at.y),
+                      .z = static_cast<float>(state.ball.radius),
+                      .radius = static_cast<float>(state.ball.radius),
+                      .object = kBallObject,
+                      .paint = paint_of(ball),
+                      .label = static_cast<std::uint8_t>(ball),
+                      .gloss = .5F});
+    for (std::size_t k = 0; k < state.robots.size(); ++k) {
+      const SimRobot& robot = state.robots[k];
+      if (robot.id == observer) continue;
+      add_robot(robot, kRobotObject + static_cast<int>(k));
+    }
+    world_.place(parts_);
+    mark_near();
+  }
+
+  void add_robot(const SimRobot& robot, int object) {
+    const RobotLook look = robot_look(robot, field_);
+    const auto height = static_cast<float>(robot.height);
+    MovingPart body{.shape = MovingPart::Shape::cylinder,
+                    .x = static_cast<float>(robot.at.x),
+                    .y = static_cast<float>(robot.at.y),
+                    .radius = static_cast<float>(robot.radius),
+                    .height = height,
+                    .object = object,
+                    .paint = paint_of(look.body),
+                    .label = static_cast<std::uint8_t>(look.body),
+                    .gloss = .02F};
+    if (look.marker) {
+      body.band = paint_of(*look.marker);
+      body.band_label = static_cast<std::uint8_t>(*look.marker);
+      body.band_low = static_cast<float>(look.marker_low) / height;
+      body.band_high = static_cast<float>(look.marker_high) / height;
+    }
+    parts_.push_back(body);
+    if (look.mast <= 0) return;
+    MovingPart mast = body;
+    mast.z = height;
+    mast.height = .6F * static_cast<float>(look.mast);
+    mast.radius = .18F * body.radius;
+    mast.paint = Light(.2F, .2F, .2F, 0);
+    mast.label = 0;
+    mast.band_low = mast.band_high = 2;
+    parts_.push_back(mast);
+    mast.z += mast.height;
+    mast.height = .4F * static_cast<float>(look.mast);
+    mast.radius = .3F * body.radius;
+    mast.paint = paint_of(ColorClass::black);
+    mast.label = static_cast<std::uint8_t>(ColorClass::black);
+    parts_.push_back(mast);
+  }
+
+  /// Marks the cells of floor that what moves darkens: a bit for each lamp whose shadow may lie there, and one for the
+  /// sky. Lamps beyond the last bit share it.
+  void mark_near() {
+    std::fill(near_.begin(), near_.end(), std::uint16_t{0});
+    for (const MovingPart& part : parts_) {
+      const float top = part.shape == MovingPart::Shape::sphere ? part.z + part.radius : part.z + part.height;
+      if (part.shape == MovingPart::Shape::sphere || part.z <= 0)
+        mark(part.x, part.y, part.x, part.y, part.radius + (part.shape == MovingPart::Shape::sphere ? .4F : .8F),
+             kSkyBit);
+      for (std::size_t l = 0; l < lighting_.lamps().size(); ++l) {
+        const Lighting::Lamp& lamp = lighting_.lamps()[l];
+        const float dx = part.x - lamp.x, dy = part.y - lamp.y, off = std::sqrt(dx * dx + dy * dy);
+        // The shadow's tip, and how wide half-shadows become on the way there.
+        const float share =
+            lamp.z > top + .05F ? std::min(top / (lamp.z - top), 4.F / std::max(off, .1F)) : 4.F / std::max(off, .1F);
+        const float wide = part.radius + share * (part.radius + lamp.radius) + .02F;
+        mark(part.x, part.y, part.x + share * dx, part.y + share * dy, wide, lamp_bit(l));
+      }
+    }
+  }
+  static std::uint16_t lamp_bit(std::size_t lamp) {
+    return static_cast<std::uint16_t>(2U << std::min<std::size_t>(lamp, 14));
+  }
+
+  /// All cells closer than `wide` to the stretch from (x0, y0) to (x1, y1).
+  void mark(float x0, float y0, float x1, float y1, float wide, std::uint16_t bit) {
+    const auto cell = [](float v, int count) { return std::clamp(static_cast<int>(v * 10), 0, count - 1); };
+    const float around = wide + .075F;  // half a cell's diagonal
+    const int c0 = cell(std::min(x0, x1) - around - near_x0_, near_columns_),
+              c1 = cell(std::max(x0, x1) + around - near_x0_, near_columns_);
+    const int r0 = cell(std::min(y0, y1) - around - near_y0_, near_rows_),
+              r1 = cell(std::max(y0, y1) + around - near_y0_, near_rows_);
+    const float dx = x1 - x0, dy = y1 - y0, square = std::max(dx * dx + dy * dy, 1e-9F);
+    for (int r = r0; r <= r1; ++r)
+      for (int c = c0; c <= c1; ++c) {
+        const float x = near_x0_ + (static_cast<float>(c) + .5F) * .1F - x0,
+                    y = near_y0_ + (static_cast<float>(r) + .5F) * .1F - y0;
+        const float along = std::clamp((x * dx + y * dy) / square, 0.F, 1.F), ex = x - along * dx, ey = y - along * dy;
+        if (ex * ex + ey * ey < around * around) near_[static_cast<std::size_t>(r * near_columns_ + c)] |= bit;
+      }
+  }
+  std::uint16_t near_bits(float x, float y) const {
+    const float column = (x - near_x0_) * 10, row = (y - near_y0_) * 10;
+    if (!(column >= 0 && row >= 0 && column < static_cast<float>(near_columns_) &&
+          row < static_cast<float>(near_rows_)))
+      return 0;
+    return near_[static_cast<std::size_t>(static_cast<int>(row) * near_columns_ + static_cast<int>(column))];
+  }
+
+  std::array<int, kLanes> aim(const RayTable::Packet& packet, RTCRayHit8& rays) const {
+    alignas(32) std::array<int, kLanes> valid;
+    for (int k = 0; k < kLanes; ++k) {
+      rays.ray.org_x[k] = eye_.x();
+      rays.ray.org_y[k] = eye_.y();
+      rays.ray.org_z[k] = eye_.z();
+      rays.ray.dir_x[k] = cos_ * packet.x[k] - sin_ * packet.y[k];
+      rays.ray.dir_y[k] = sin_ * packet.x[k] + cos_ * packet.y[k];
+      rays.ray.dir_z[k] = packet.z[k];
+      rays.ray.tnear[k] = 0;
+      rays.ray.tfar[k] = 1e4F;
+      rays.ray.time[k] = 0;
+      rays.ray.mask[k] = ~0U;
+      rays.ray.flags[k] = 0;
+      rays.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+      rays.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+      valid[static_cast<std::size_t>(k)] = packet.x[k] == packet.x[k] ? -1 : 0;
+    }
+    return valid;
+  }
+
+  static bool hit_anything(const RTCRayHit8& rays, int k) { return rays.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID; }
+
+  const MovingPart* part_hit(const RTCRayHit8& rays, int k) const {
+    const unsigned instance = rays.hit.instID[0][k];
+    return instance == RTC_INVALID_GEOMETRY_ID ? nullptr : &parts_[instance];
+  }
+  Vector3f place_hit(const RTCRayHit8& rays, int k) const {
+    const float t = rays.ray.tfar[k];
+    return eye_ + t * Vector3f(rays.ray.dir_x[k], rays.ray.dir_y[k], rays.ray.dir_z[k]);
+  }
+  static bool in_band(const MovingPart& part, float z) {
+    const float share = (z - part.z) / part.height;
+    return share > part.band_low && share < part.band_high;
+  }
+  bool on_carpet(float x, float y) const {
+    return x > stage_.carpet_x.low && x < stage_.carpet_x.high && y > stage_.carpet_y.low && y < stage_.carpet_y.high;
+  }
+
+  /// The ray from the eye to a panel goes through its goal's mouth.
+  bool through_mouth(const Vector3f& at, int goal) const { return through_mouth(eye_, at, goal); }
+  bool through_mouth(const Vector3f& from, const Vector3f& at, int index) const {
+    const FieldModel::Goal& goal = field_.goals[static_cast<std::size_t>(index)];
+    const double sign = goal.side == GoalSide::plus_x ? 1 : -1;
+    const double mouth = goal.side == GoalSide::plus_x ? field_x_high() : -field_x_low();
+    const double before = mouth - sign * from.x(), behind = sign * at.x() - mouth;
+    if (before <= 0 || behind < -1e-4) return false;
+    const double share = before / (before + std::max(behind, 0.));
+    const double y = from.y() + share * (at.y() - from.y()), z = from.z() + share * (at.z() - from.z());
+    return std::abs(y) <= goal.width / 2 + 1e-4 && z >= 0 && z <= goal.height;
+  }
+  double field_x_high() const { return field_.walls ? field_.walls->x.high : field_.length / 2; }
+  double field_x_low() const { return field_.walls ? field_.walls->x.low : -field_.length / 2; }
+
+  Seen what(const RTCRayHit8& rays, int k) const {
+    if (!hit_anything(rays, k)) return {};
+    const Vector3f at = place_hit(rays, k);
+    if (const MovingPart* part = part_hit(rays, k))
+      return {part->object, in_band(*part, at.z()) ? part->band_label : part->label};
+    const Surface& surface = stage_.surfaces[stage_.triangles[rays.hit.primID[k]].surface];
+    if (surface.is_floor) {
+      if (!on_carpet(at.x(), at.y())) return {};
+      return {0,
+              static_cast<std::uint8_t>(marks_.exact({at.x(), at.y()}) <= 0 ? ColorClass::white : ColorClass::green)};
+    }
+    if (surface.goal >= 0 && through_mouth(at, surface.goal)) return {kGoalObject + surface.goal, surface.label};
+    return {0, surface.label};
+  }
+
+  static void extend(std::optional<std::array<int, 4>>& box, int c, int r) {
+    if (!box) box = {c, r, c, r};
+    auto& [c0, r0, c1, r1] = *box;
+    c0 = std::min(c0, c);
+    r0 = std::min(r0, r);
+    c1 = std::max(c1, c);
+    r1 = std::max(r1, r);
+  }
+  void add_to_silhouette(SimVisibility& of, int c, int r) const {
+    ++of.silhouette_px;
+    extend(of.full_box, c, r);
+    of.truncated = of.truncated || c == 0 || r == 0 || c == width() - 1 || r == height() - 1;
+  }
+
+  /// Each object as if it were alone, for the packet whose first pixel is (c0, r).
+  void add_silhouettes(std::size_t index, int c0, int r) {
+    const RayTable::Packet& packet = centers_.packets[index];
+    std::array<int, kLanes> owner{};  // of lanes that this robot's parts have met already
+    for (const MovingPart& part : parts_) {
+      RTCRayHit8 rays;
+      const std::array<int, kLanes> valid = aim(packet, rays);
+      // Far from its bounding sphere no ray meets it.
+      const float half = part.shape == MovingPart::Shape::sphere ? 0 : .5F * part.height;
+      const Vector3f to = Vector3f(part.x, part.y, part.z + half) - eye_;
+      const float around = std::hypot(part.radius, half) * 1.01F;
+      bool close = false;
+      for (int k = 0; k < kLanes && !close; ++k) {
+        const float along = to.x() * rays.ray.dir_x[k] + to.y() * rays.ray.dir_y[k] + to.z() * rays.ray.dir_z[k];
+        close = along > 0 && to.squaredNorm() - along * along <= around * around;
+      }
+      if (!close) continue;
+      world_.intersect_part(valid.data(), part, rays);
+      SimVisibility& of =
+          part.object == kBallObject ? view_.ball : view_.robots[static_cast<std::size_t>(part.object - kRobotObject)];
+      for (int k = 0; k < kLanes && c0 + k < width(); ++k) {
+        int& mine = owner[static_cast<std::size_t>(k)];
+        if (!hit_anything(rays, k) || mine == part.object) continue;
+        mine = part.object;
+        add_to_silhouette(of, c0 + k, r);
+      }
+    }
+    for (std::size_t g = 0; g < goals_.size(); ++g) {
+      RTCRayHit8 rays;
+      const std::array<int, kLanes> valid = aim(packet, rays);
+      goals_[g]->intersect(valid.data(), rays);
+      for (int k = 0; k < kLanes && c0 + k < width(); ++k)
+        if (hit_anything(rays, k) && through_mouth(place_hit(rays, k), static_cast<int>(g)))
+          add_to_silhouette(view_.goals[g], c0 + k, r);
+    }
+  }
+
+  void add_light(const RayTable& table, int sample, float weight) {
+    const int per_row = packets_per_row();
+    for (int r = 0; r < height(); ++r)
+      for (int p = 0; p < per_row; ++p) {
+        RTCRayHit8 rays;
+        const std::array<int, kLanes> valid = aim(table.packets[static_cast<std::size_t>(r * per_row + p)], rays);
+        world_.intersect(valid.data(), rays);
+        std::array<Point, kLanes> points;
+        bool floor_near = false, solid = false;
+        const int lanes = std::min(kLanes, width() - p * kLanes);
+        const std::size_t first = static_cast<std::size_t>(r * width() + p * kLanes);
+        for (int k = 0; k < lanes; ++k) {
+          Point& point = points[static_cast<std::size_t>(k)];
+          point.kind = Point::none;
+          if (!hit_anything(rays, k)) continue;
+          set_point(rays, k, first + static_cast<std::size_t>(k), point);
+          if (options_.flat) {
+            point.kind = Point::done;
+            point.glow = point.albedo;
+          }
+          floor_near = floor_near || point.kind == Point::floor_near;
+          solid = solid || point.kind == Point::solid;
+        }
+        if (floor_near || solid) light_points(points, lanes, first, sample);
+        for (int k = 0; k < lanes; ++k)
+          if (points[static_cast<std::size_t>(k)].kind != Point::none)
+            light_[first + static_cast<std::size_t>(k)] += weight * points[static_cast<std::size_t>(k)].glow;
+      }
+  }
+
+  void set_point(const RTCRayHit8& rays, int k, std::size_t pixel, Point& point) const {
+    point.at = place_hit(rays, k);
+    point.gloss = 0;
+    if (const MovingPart* part = part_hit(rays, k)) {
+      point.kind = Point::solid;
+      point.gloss = part->gloss;
+      const float x = point.at.x() - part->x, y = point.at.y() - part->y;
+      if (part->shape == MovingPart::Shape::sphere) {
+        point.normal = Vector3f(x, y, point.at.z() - part->z) / part->radius;
+        point.albedo = part->paint;
+      } else if (point.at.z() > part->z + part->height * .9999F) {
+        point.normal = {0, 0, 1};
+        point.albedo = part->paint;
+      } else {
+        point.normal = Vector3f(x, y, 0).normalized();
+        point.albedo = in_band(*part, point.at.z()) ? part->band : part->paint;
+      }
+      // Near the floor less light comes from below: dark undersides.
+      const float open = part->shape == MovingPart::Shape::sphere
+                             ? std::clamp(.06F + .75F * (1 + point.normal.z()), 0.F, 1.F)
+                             : std::clamp(.45F + point.at.z() / .35F, 0.F, 1.F);
+      point.glow = point.albedo * (.5F * (1 + point.normal.z()) * lighting_.above() +
+                                   .5F * open * (1 - point.normal.z()) * lighting_.below());
+      return;
+    }
+    const Stage::Triangle& triangle = stage_.triangles[rays.hit.primID[k]];
+    const Surface& surface = stage_.surfaces[triangle.surface];
+    if (surface.is_floor) {
+      set_floor(pixel, point);
+      return;
+    }
+    const float u = rays.hit.u[k], v = rays.hit.v[k];
+    point.normal = ((1 - u - v) * stage_.normals[triangle.corners[0]] + u * stage_.normals[triangle.corners[1]] +
+                    v * stage_.normals[triangle.corners[2]]);
+    if (point.normal.x() * rays.ray.dir_x[k] + point.normal.y() * rays.ray.dir_y[k] +
+            point.normal.z() * rays.ray.dir_z[k] >
+        0)
+      point.normal = -point.normal;
+    point.albedo = surface.albedo;
+    point.gloss = surface.gloss;
+    point.glow = point.albedo * lighting_.ambient(point.normal);
+    point.kind = Point::solid;
+    if (surface.is_outside) {
+      for (const Lighting::Lamp& lamp : lighting_.lamps())
+        point.glow += point.albedo * Lighting::share(lamp, point.at, point.normal) * lamp.color;
+      point.kind = Point::done;
+    }
+  }
+
+  void set_floor(std::size_t pixel, Point& point) const {
+    const float x = point.at.x(), y = point.at.y();
+    point.normal = {0, 0, 1};
+    point.kind = Point::done;
+    if (!on_carpet(x, y)) {
+      point.albedo = hall_floor_;
+      point.glow = hall_floor_ * lighting_.floor(x, y);
+      return;
+    }
+    const Footprint& step = footprints_[pixel];
+    const float share = 1.F / static_cast<float>(options_.rays_per_side);
+    // The carpet's grain, as far as the pixels resolve it.
+    const float size = share * std::max(std::abs(step.cx) + std::abs(step.rx), std::abs(step.cy) + std::abs(step.ry));
+    constexpr float tuft = 1 / .012F;
+    const auto tile = [](float v) {
+      return static_cast<std::size_t>(static_cast<int>(v * tuft + 65536.F)) & (kGrainSize - 1);
+    };
+    const float grain = grain_[tile(y) * kGrainSize + tile(x)] * std::min(1.F, .012F / size);
+    point.albedo = (1 + static_cast<float>(options_.carpet) * grain) * green_;
+
+    FloorMarks::Near near = marks_.near(x, y);
+    if (near.in_table) {
+      if (std::abs(near.distance) < 1.6F * marks_.cell()) near.distance = static_cast<float>(marks_.exact({x, y}));
+      // Of the pixel's square, what lies within the mark: edges cross it straight.
+      const float gx = cos_ * near.gx + sin_ * near.gy, gy = cos_ * near.gy - sin_ * near.gx;  // robot frame
+      const float across =
+          share * (std::abs(gx * step.cx + gy * step.cy) + std::abs(gx * step.rx + gy * step.ry)) + 1e-6F;
+      const auto within = [&](float distance) { return std::clamp(.5F - distance / across, 0.F, 1.F); };
+      const float covered = within(near.distance) - within(near.distance + marks_.line_width());
+      if (covered > 0) point.albedo += covered * (white_ - point.albedo);
+    }
+    point.glow = point.albedo * lighting_.floor(x, y);
+    point.near = near_bits(x, y);
+    if (point.near != 0) point.kind = Point::floor_near;
+  }
+
+  /// Share of the sky that what moves hides from a floor point.
+  float hidden_sky(const Vector3f& at) const {
+    float hidden = 0;
+    for (const MovingPart& part : parts_) {
+      const float dx = at.x() - part.x, dy = at.y() - part.y, square = dx * dx + dy * dy;
+      if (square > 1) continue;
+      if (part.shape == MovingPart::Shape::sphere) {
+        // The form factor of a sphere above a plane: R^2 cos / d^2 of its centre.
+        const float d2 = square + part.z * part.z;
+        hidden += part.radius * part.radius * part.z / (d2 * std::sqrt(d2));
+      } else if (part.z <= 0) {
+        const float range = std::sqrt(square), gap = std::max(range - part.radius, 0.F);
+        const float wall = .5F * (1 - gap / std::sqrt(gap * gap + part.height * part.height));
+        hidden += wall * std::min(1.F, 1.4F * part.radius / std::max(range, part.radius));
+      }
+    }
+    return std::min(hidden, .95F);
+  }
+
+  void light_points(std::array<Point, kLanes>& points, int lanes, std::size_t first, int sample) {
+    const bool full = options_.quality == RenderQuality::full;
+    alignas(32) std::array<int, kLanes> floors{}, solids{};
+    std::uint16_t near = 0;
+    bool any_solid = false;
+    for (int k = 0; k < lanes; ++k) {
+      const auto lane = static_cast<std::size_t>(k);
+      Point& point = points[lane];
+      if (point.kind == Point::floor_near) {
+        if ((point.near & kSkyBit) != 0) point.glow -= point.albedo * lighting_.above() * hidden_sky(point.at);
+        floors[lane] = -1;
+        near |= point.near;
+      } else if (point.kind == Point::solid) {
+        solids[lane] = -1;
+        any_solid = true;
+      }
+    }
+    const std::size_t spin = mixed(first) + static_cast<std::size_t>(sample);
+    alignas(32) RTCRay8 rays;
+    for (std::size_t l = 0; l < lighting_.lamps().size(); ++l) {
+      const Lighting::Lamp& lamp = lighting_.lamps()[l];
+      const bool shaded_floor = (near & lamp_bit(l)) != 0, shaded_solid = any_solid && full;
+      if (shaded_floor || shaded_solid) {
+        aim_at_lamp(lamp, points, lanes, spin + 67 * l, rays);
+        if (shaded_floor) world_.occluded(floors.data(), rays, false, true);
+        if (shaded_solid) world_.occluded(solids.data(), rays, true, true);
+      }
+      for (int k = 0; k < lanes; ++k) {
+        const auto lane = static_cast<std::size_t>(k);
+        Point& point = points[lane];
+        if (shaded_floor && floors[lane] != 0) {
+          if (rays.tfar[k] < 0) point.glow -= point.albedo * Lighting::share(lamp, point.at, point.normal) * lamp.color;
+        } else if (solids[lane] != 0 && !(shaded_solid && rays.tfar[k] < 0)) {
+          point.glow += point.albedo * Lighting::share(lamp, point.at, point.normal) * lamp.color;
+          if (point.gloss > 0) point.glow += highlight(point, lamp) * lamp.color;
+        }
+      }
+    }
+    for (int k = 0; k < lanes; ++k)
+      if (floors[static_cast<std::size_t>(k)] != 0) {
+        Point& point = points[static_cast<std::size_t>(k)];
+        point.glow = point.glow.max(.05F * point.albedo * lighting_.above());
+      }
+  }
+
+  /// From the points to places all over the lamp, other ones for each.
+  static void aim_at_lamp(const Lighting::Lamp& lamp, const std::array<Point, kLanes>& points, int lanes,
+                          std::size_t spin, RTCRay8& rays) {
+    const auto& disc = disc_points();
+    for (int k = 0; k < kLanes; ++k) {
+      const auto lane = static_cast<std::size_t>(k);
+      const auto& [dx, dy] = disc[(spin + 29 * lane) & 255U];
+      const bool used = k < lanes && points[lane].kind != Point::none;
+      const Vector3f from = used ? Vector3f(points[lane].at + kLift * points[lane].normal) : Vector3f(0, 0, 0);
+      rays.org_x[k] = from.x();
+      rays.org_y[k] = from.y();
+      rays.org_z[k] = from.z();
+      rays.dir_x[k] = lamp.x + lamp.radius * dx - from.x();
+      rays.dir_y[k] = lamp.y + lamp.radius * dy - from.y();
+      rays.dir_z[k] = lamp.z - from.z();
+      rays.tnear[k] = 0;
+      rays.tfar[k] = .98F;
+      rays.time[k] = 0;
+      rays.mask[k] = ~0U;
+      rays.flags[k] = 0;
+    }
+  }
+
+  /// Blinn, "Models of light reflection for computer synthesized pictures", SIGGRAPH 1977.
+  float highlight(const Point& point, const Lighting::Lamp& lamp) const {
+    const Vector3f to_lamp = (Vector3f(lamp.x, lamp.y, lamp.z) - point.at);
+    const Vector3f half = (to_lamp.normalized() + (eye_ - point.at).normalized()).normalized();
+    const float facing = half.dot(point.normal);
+    if (facing <= .8F) return 0;
+    const float f2 = facing * facing, f4 = f2 * f2, f8 = f4 * f4, f16 = f8 * f8, f32 = f16 * f16;
+    return point.gloss * f32 * f16 / to_lamp.squaredNorm();
+  }
+
+  FrameBuffer free_buffer() {
+    for (FrameBuffer& buffer : buffers_)
+      if (buffer.frame.storage.use_count() == 1) {
+        std::atomic_thread_fence(std::memory_order_acquire);
+        return buffer;
+      }
+    buffers_.push_back(make_frame_buffer(options_.format, width(), height(), options_.range));
+    return buffers_.back();
+  }
+
+  FieldModel field_;
+  MountedCamera camera_;
+  RenderOptions options_;
+  Stage stage_;
+  RayWorld world_;
+  Lighting lighting_;
+  FloorMarks marks_;
+  Sensor sensor_;
+  RayTable centers_;
+  std::vector<RayTable> tables_;  ///< Empty: one ray a pixel, through its centre.
+  std::vector<Footprint> footprints_;
+  std::vector<float> grain_;
+  std::vector<std::unique_ptr<RayWorld>> goals_;
+  Light hall_floor_, green_, white_;
+
+  FieldFromRobot pose_;
+  Vector3f eye_;
+  float cos_ = 1, sin_ = 0;
+  std::vector<MovingPart> parts_;
+  std::vector<std::uint16_t> near_;  ///< Cells of floor, .1 m; bits of mark_near.
+  int near_columns_ = 0, near_rows_ = 0;
+  float near_x0_ = 0, near_y0_ = 0;
+  std::vector<Light> light_;
+  std::vector<int> objects_;
+  SimView view_;
+  std::vector<FrameBuffer> buffers_;
+};
+
+Renderer::Renderer(const FieldModel& field, const MountedCamera& camera, const RenderOptions& options) {
+  options.check();
+  work_ = std::make_unique<Work>(field, camera, options);
+}
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+Renderer::~Renderer() = default;
+
+const RenderOptions& Renderer::options() const { return work_->options(); }
+void Renderer::set_light(const std::vector<SimLamp>& lamps, double exposure) { work_->set_light(lamps, exposure); }
+Frame Renderer::render(const SimState& state, int observer) { return work_->render(state, observer); }
+const SimView& Renderer::look(const SimState& state, int observer) { return work_->look(state, observer); }
+
+}  // namespace tassilo
