@@ -163,6 +163,30 @@ TEST(TeamFusion, WhatIsOlderThanTheHistoryOrOfTheFutureIsDroppedAndCounted) {
   EXPECT_EQ(fusion.counts().duplicates, 1);
 }
 
+TEST(TeamFusion, OnlyWhatIsYoungerIsDoneAgain) {
+  TeamFusion fusion;
+  const PoseSeen pose = pose_at(0, 0, 0);
+  for (int i = 0; i < 100; ++i) fusion.add(observation_of(1, 5 + i * 0.005, pose), 5.5), fusion.at(5 + i * 0.005);
+  EXPECT_EQ(fusion.counts().replayed, 0);
+  fusion.add(observation_of(2, 5.4501, pose), 5.5);
+  fusion.at(5.5);
+  EXPECT_EQ(fusion.counts().replayed, 9);
+}
+
+TEST(TeamFusion, OfATimeBeforeTheHistoryNothingIsKnownAnyMore) {
+  TeamFusion fusion;
+  const PoseSeen pose = pose_at(0, 0, 0);
+  for (int i = 0; i < 300; ++i) {
+    TeamObservation one = observation_of(1, i / 100.0, pose);
+    one.balls.push_back(ball_at(pose, {2, 0}));
+    fusion.add(one, one.t);
+    fusion.at(one.t);
+  }
+  EXPECT_TRUE(fusion.at(2.5).ball);
+  EXPECT_FALSE(fusion.at(1).ball);
+  EXPECT_TRUE(fusion.at(2.99).ball);
+}
+
 TEST(TeamFusion, TheHistoryIsBoundedHoweverManySend) {
   TeamFusionOptions options;
   options.max_observations = 64;
