@@ -111,19 +111,19 @@ void RayWorld::place(std::span<const MovingPart> parts) {
   rtcCommitScene(moving_.get());
 }
 
-void RayWorld::intersect(const int* valid, RTCRayHit8& rays) const {
+void RayWorld::intersect(const LaneMask& valid, RTCRayHit8& rays) const {
   RTCIntersectContext context = coherent_context();
-  rtcIntersect8(valid, stage_.get(), &context, &rays);
-  rtcIntersect8(valid, moving_.get(), &context, &rays);
+  rtcIntersect8(valid.lane, stage_.get(), &context, &rays);
+  rtcIntersect8(valid.lane, moving_.get(), &context, &rays);
 }
 
-void RayWorld::occluded(const int* valid, RTCRay8& rays, bool by_stage, bool by_parts) const {
+void RayWorld::occluded(const LaneMask& valid, RTCRay8& rays, bool by_stage, bool by_parts) const {
   RTCIntersectContext context = coherent_context();
-  if (by_parts) rtcOccluded8(valid, moving_.get(), &context, &rays);
-  if (by_stage) rtcOccluded8(valid, stage_.get(), &context, &rays);
+  if (by_parts) rtcOccluded8(valid.lane, moving_.get(), &context, &rays);
+  if (by_stage) rtcOccluded8(valid.lane, stage_.get(), &context, &rays);
 }
 
-void RayWorld::intersect_part(const int* valid, const MovingPart& part, RTCRayHit8& rays) const {
+void RayWorld::intersect_part(const LaneMask& valid, const MovingPart& part, RTCRayHit8& rays) const {
   RTCIntersectContext context = coherent_context();
   const float up = part.shape == MovingPart::Shape::sphere ? part.radius : part.height;
   for (int k = 0; k < 8; ++k) {
@@ -134,7 +134,7 @@ void RayWorld::intersect_part(const int* valid, const MovingPart& part, RTCRayHi
     rays.ray.dir_y[k] /= part.radius;
     rays.ray.dir_z[k] /= up;
   }
-  rtcIntersect8(valid, part.shape == MovingPart::Shape::sphere ? sphere_.get() : cylinder_.get(), &context, &rays);
+  rtcIntersect8(valid.lane, part.shape == MovingPart::Shape::sphere ? sphere_.get() : cylinder_.get(), &context, &rays);
 }
 
 }  // namespace tassilo
