@@ -28,6 +28,7 @@ constexpr int kLanes = 8;
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 constexpr float kLift = 1e-3F;  ///< Shadow rays start so far from surfaces. [m]
 constexpr int kGrainSize = 256;
+constexpr double kTuft = .012;  ///< Of the carpet. [m]
 
 // Of cells of floor: what may darken them, and that marks are close.
 constexpr std::uint16_t kSkyBit = 1, kMarkBit = 0x8000;
@@ -86,32 +87,37 @@ std::vector<PixelPoint> sub_pixels(int count) {
   return places;
 }
 
-/// What a step of one pixel is on the floor, robot frame; large where the floor is not seen. [m]
+/// What a step from one ray to the next is on the floor, robot frame; large where the floor is not seen. [m]
 struct Footprint {
   float cx, cy, rx, ry;
+  float size;   ///< [m]
+  float grain;  ///< Of the carpet's contrast, what such steps resolve. [1/100]
 };
 
-std::vector<Footprint> footprints_of(const MountedCamera& camera) {
+std::vector<Footprint> footprints_of(const MountedCamera& camera, int rays_per_side) {
   std::vector<Footprint> footprints;
   const auto step = [&](PixelPoint a, PixelPoint b) {
     const auto p = camera.floor_point(a), q = camera.floor_point(b);
-    return p && q ? *q - *p : FloorPoint{30, 30};
+    return p && q ? (1. / rays_per_side) * (*q - *p) : FloorPoint{30, 30};
   };
   for (int r = 0; r < camera.model().height; ++r)
     for (int c = 0; c < camera.model().width; ++c) {
       const FloorPoint column = step({c - .5, double(r)}, {c + .5, double(r)}),
                        row = step({double(c), r - .5}, {double(c), r + .5});
+      const double size = std::max(std::abs(column.x) + std::abs(row.x), std::abs(column.y) + std::abs(row.y));
       footprints.push_back({static_cast<float>(column.x), static_cast<float>(column.y), static_cast<float>(row.x),
-                            static_cast<float>(row.y)});
+                            static_cast<float>(row.y), static_cast<float>(size),
+                            static_cast<float>(.01 * std::min(1., kTuft / size))});
     }
   return footprints;
 }
 
-/// Brightness of carpet by place: tufts and a coarser pattern, a tile that repeats. Mean 0, about -1..1.
-std::vector<float> carpet_grain(std::uint64_t seed) {
+/// Brightness of carpet by place: tufts and a coarser pattern, a tile that repeats. Mean 0; 100 is 1.
+std::vector<std::int8_t> carpet_grain(std::uint64_t seed) {
   std::mt19937_64 engine(seed ^ 0xCA59E7U);
   const auto unit = [&] { return static_cast<float>(static_cast<double>(engine() >> 11U) * 0x1p-53 * 2 - 1); };
-  std::vector<float> grain(kGrainSize * kGrainSize), coarse(32 * 32);
+  std::vector<std::int8_t> grain(kGrainSize * kGrainSize);
+  std::vector<float> coarse(32 * 32);
   for (float& v : coarse) v = unit();
   for (int r = 0; r < kGrainSize; ++r)
     for (int c = 0; c < kGrainSize; ++c) {
@@ -123,7 +129,8 @@ std::vector<float> carpet_grain(std::uint64_t seed) {
       };
       const float smooth =
           (at(0, 0) * (1 - fx) + at(1, 0) * fx) * (1 - fy) + (at(0, 1) * (1 - fx) + at(1, 1) * fx) * fy;
-      grain[static_cast<std::size_t>(r * kGrainSize + c)] = .65F * unit() + .5F * smooth;
+      grain[static_cast<std::size_t>(r * kGrainSize + c)] =
+          static_cast<std::int8_t>(100 * (.65F * unit() + .5F * smooth));
     }
   return grain;
 }
@@ -204,12 +211,12 @@ class Renderer::Work {
         camera_(camera),
         options_(options),
         stage_(make_stage(field, {options.clutter, options.people, options.ball_colored_people, options.seed})),
-        world_(stage_),
+        world_(stage_, options.quality == RenderQuality::full),
         lighting_(stage_, world_, options),
         marks_(field),
         sensor_(camera.model(), options),
         centers_(camera, 0, 0),
-        footprints_(footprints_of(camera)),
+        footprints_(footprints_of(camera, options.rays_per_side)),
         grain_(carpet_grain(options.seed)) {
     for (const PixelPoint& offset : sub_pixels(options.rays_per_side * options.rays_per_side))
       tables_.emplace_back(camera, offset.x, offset.y);
@@ -646,28 +653,24 @@ class Renderer::Work {
       return;
     }
     const Footprint& step = footprints_[pixel];
-    const float share = 1.F / static_cast<float>(options_.rays_per_side);
-    // The carpet's grain, as far as the pixels resolve it.
-    const float size = share * std::max(std::abs(step.cx) + std::abs(step.rx), std::abs(step.cy) + std::abs(step.ry));
-    constexpr float tuft = 1 / .012F;
+    constexpr auto tuft = static_cast<float>(1 / kTuft);
     const auto tile = [](float v) {
       return static_cast<std::size_t>(static_cast<int>(v * tuft + 65536.F)) & (kGrainSize - 1);
     };
-    const float grain = grain_[tile(y) * kGrainSize + tile(x)] * std::min(1.F, .012F / size);
+    const float grain = step.grain * static_cast<float>(grain_[tile(y) * kGrainSize + tile(x)]);
     points.albedo[k] = (1 + static_cast<float>(options_.carpet) * grain) * green_;
 
     const std::uint16_t bits = near_bits(x, y);
     points.near[k] = bits & static_cast<std::uint16_t>(~kMarkBit);
     if (points.near[k] != 0) points.kind[k] = Kind::floor_near;
-    if ((bits & kMarkBit) == 0 && size < kMarkReach) return;
+    if ((bits & kMarkBit) == 0 && step.size < kMarkReach) return;
     FloorMarks::Near near = marks_.near(x, y);
     if (near.in_table) {
       if (std::abs(near.distance) < 1.6F * marks_.cell() && options_.quality == RenderQuality::full)
         near.distance = static_cast<float>(marks_.exact({x, y}));
       // Of the pixel's square, what lies within the mark: edges cross it straight.
       const float gx = cos_ * near.gx + sin_ * near.gy, gy = cos_ * near.gy - sin_ * near.gx;  // robot frame
-      const float across =
-          share * (std::abs(gx * step.cx + gy * step.cy) + std::abs(gx * step.rx + gy * step.ry)) + 1e-6F;
+      const float across = std::abs(gx * step.cx + gy * step.cy) + std::abs(gx * step.rx + gy * step.ry) + 1e-6F;
       if (near.distance < .5F * across) {
         const auto within = [&](float distance) { return std::clamp(.5F - distance / across, 0.F, 1.F); };
         const float covered = within(near.distance) - within(near.distance + marks_.line_width());
@@ -812,7 +815,7 @@ class Renderer::Work {
   RayTable centers_;
   std::vector<RayTable> tables_;  ///< Empty: one ray a pixel, through its centre.
   std::vector<Footprint> footprints_;
-  std::vector<float> grain_;
+  std::vector<std::int8_t> grain_;
   std::vector<std::unique_ptr<RayWorld>> goals_;
   Light hall_floor_, green_, white_;
 

@@ -71,11 +71,12 @@ RtcScene RayWorld::new_scene(RTCSceneFlags flags) const {
   return scene;
 }
 
-RayWorld::RayWorld(const Stage& stage) : device_(rtcNewDevice("threads=1,set_affinity=0")) {
+RayWorld::RayWorld(const Stage& stage, bool watertight) : device_(rtcNewDevice("threads=1,set_affinity=0")) {
   if (!device_) throw Error("embree", "cannot be started on this machine");
-  stage_ = new_scene(RTC_SCENE_FLAG_ROBUST);
-  sphere_ = new_scene(RTC_SCENE_FLAG_ROBUST);
-  cylinder_ = new_scene(RTC_SCENE_FLAG_ROBUST);
+  const RTCSceneFlags flags = watertight ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE;
+  stage_ = new_scene(flags);
+  sphere_ = new_scene(flags);
+  cylinder_ = new_scene(flags);
   moving_ = new_scene(RTC_SCENE_FLAG_DYNAMIC);
   std::vector<std::array<std::uint32_t, 3>> triangles;
   for (const Stage::Triangle& triangle : stage.triangles) triangles.push_back(triangle.corners);
