@@ -139,16 +139,14 @@ ColorClass class_named(const std::string& name, ColorClass otherwise) {
   return color_class_from(name).value_or(otherwise);
 }
 
-/// Where a state's things are some time later or earlier, as they move.
-SimState moved(const SimState& state, double dt) {
-  SimState out = state;
-  out.ball.at = out.ball.at + dt * FieldPoint{state.ball.vx, state.ball.vy};
-  for (SimRobot& robot : out.robots) {
+/// Things some time later or earlier than they were, as they move.
+void move(SimState& state, double dt) {
+  state.ball.at = state.ball.at + dt * FieldPoint{state.ball.vx, state.ball.vy};
+  for (SimRobot& robot : state.robots) {
     const double middle = robot.theta + .5 * dt * robot.turn;
     robot.at = robot.at + dt * robot.speed * FieldPoint{std::cos(middle), std::sin(middle)};
     robot.theta += dt * robot.turn;
   }
-  return out;
 }
 
 }  // namespace
@@ -260,7 +258,9 @@ class Renderer::Work {
     const int samples = std::max<int>(1, static_cast<int>(tables_.size()));
     const float weight = 1.F / static_cast<float>(moments * samples);
     for (int m = 0; m < moments; ++m) {
-      set_scene(moments == 1 ? state : moved(state, ((m + .5) / moments - .5) * options_.shutter), observer);
+      moment_ = state;
+      if (moments > 1) move(moment_, ((m + .5) / moments - .5) * options_.shutter);
+      set_scene(moment_, observer);
       for (int s = 0; s < samples; ++s)
         add_light(tables_.empty() ? centers_ : tables_[static_cast<std::size_t>(s)], m * samples + s, weight);
     }
@@ -819,6 +819,7 @@ class Renderer::Work {
   std::vector<std::unique_ptr<RayWorld>> goals_;
   Light hall_floor_, green_, white_;
 
+  SimState moment_;
   FieldFromRobot pose_;
   Vector3f eye_;
   float cos_ = 1, sin_ = 0;
