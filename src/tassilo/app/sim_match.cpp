@@ -408,7 +408,9 @@ void SimMatch::note(Seat& seat, const Scene& scene) {
 
 /// The team's ball as the bench knows it, against the sighting that is surest by its own account.
 void SimMatch::note_team(double t) {
-  if (sightings_.empty()) return;
+  // A ball that the referee has just carried somewhere else did not roll there: nobody can know it at once.
+  constexpr double carried = 1;  // [s]
+  if (sightings_.empty() || (!calls_.empty() && t - calls_.back().t < carried)) return;
   ++report_.seen;
   const TeamWorld team = bench_.at(t);
   if (!team.ball) return;
