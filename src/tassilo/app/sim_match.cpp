@@ -31,7 +31,8 @@ CameraModel match_camera() {
   camera.distortion = Division{-0.1458};
   return camera;
 }
-CameraMount match_mount() { return {0.06, 0, 0.52, 0, radians(14), 0}; }
+/// On a mast at the rear, so that a ball at the robot's front is still in view.
+CameraMount match_mount() { return {-0.1, 0, 0.6, 0, radians(24), 0}; }
 
 RenderOptions rendering(std::uint64_t seed) {
   RenderOptions options = fast_rendering();
