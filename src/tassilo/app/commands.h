@@ -21,6 +21,7 @@ inline void add_plugin_option(CLI::App& verb, std::vector<std::string>& files) {
 
 Command add_run(CLI::App& program);
 Command add_serve(CLI::App& program);
+Command add_demo(CLI::App& program);
 Command add_monitor(CLI::App& program);
 Command add_replay(CLI::App& program);
 Command add_train_colors(CLI::App& train);

@@ -51,6 +51,7 @@ int main(int argc, char** argv) {
 
   const Command run = add_run(program);
   const Command serve = add_serve(program);
+  const Command demo = add_demo(program);
   const Command monitor = add_monitor(program);
   const Command replay = add_replay(program);
   auto* train = program.add_subcommand("train", "train what the vision needs");
@@ -66,6 +67,7 @@ int main(int argc, char** argv) {
   const auto command = [&] {
     if (program.got_subcommand("run")) return run();
     if (program.got_subcommand("serve")) return serve();
+    if (program.got_subcommand("demo")) return demo();
     if (program.got_subcommand("monitor")) return monitor();
     if (program.got_subcommand("replay")) return replay();
     if (program.got_subcommand("train")) return train_colors();

@@ -45,7 +45,7 @@ struct RenderArguments {
   std::string difficulty = "normal", range = "limited", format = "yuv422p";
   double seconds = 2, fps = 20;
   std::uint64_t seed = 1;
-  std::optional<int> others, rays;
+  std::optional<int> others, rays, stills;
   std::optional<double> ball_radius;
   bool start_pose = false, quiet = false;
 };
@@ -133,7 +133,7 @@ std::string meta_json(const RenderArguments& arguments, const Shoot& shoot, std:
   nlohmann::ordered_json meta{
       {"name", fs::path(arguments.output).filename().string()},
       {"camera", shoot.camera.model.name},
-      {"fps", arguments.fps},
+      {"fps", arguments.stills ? 1 : arguments.fps},
       {"video", "video.mkv"},
       {"pixel_format", std::string(to_string(shoot.rendering.format)) + " (lossless)"},
       {"color_range", std::string(to_string(shoot.rendering.range))},
@@ -189,17 +189,18 @@ std::vector<SimLamp> lamps_after_the_middle(std::vector<SimLamp> lamps) {
 
 int sim_render_command(const RenderArguments& arguments) {
   const Shoot shoot = read_shoot(arguments);
-  const std::int64_t frames = std::max<std::int64_t>(1, std::llround(arguments.seconds * arguments.fps));
+  const double fps = arguments.stills ? 1 : arguments.fps;
+  const std::int64_t frames =
+      arguments.stills ? *arguments.stills : std::max<std::int64_t>(1, std::llround(arguments.seconds * fps));
   const fs::path folder = fs::path(arguments.output).lexically_normal();
   Renderer renderer(shoot.field, {shoot.camera.model, *shoot.camera.mount}, shoot.rendering);
-  const SimMotion motion = scripted_motion(shoot.field, shoot.script);
+  const SimMotion motion =
+      arguments.stills ? scripted_stills(shoot.field, shoot.script) : scripted_motion(shoot.field, shoot.script);
   const TruthLines truth(shoot.field, {shoot.camera.model, *shoot.camera.mount});
   make_folder(folder);
   end_cleanly_on_signals();
 
-  const auto time_of = [&](std::int64_t frame) {
-    return std::round(1000 * static_cast<double>(frame) / arguments.fps) / 1000;
-  };
+  const auto time_of = [&](std::int64_t frame) { return std::round(1000 * static_cast<double>(frame) / fps) / 1000; };
   const int me = shoot.robot.id;
   SlippingWheels wheels(arguments.seed);
   Pose2<FieldFrame, RobotFrame> odometry;
@@ -222,12 +223,13 @@ int sim_render_command(const RenderArguments& arguments) {
     const SimState state = motion(time_of(done));
     const SimRobot& robot = *std::ranges::find(state.robots, me, &SimRobot::id);
     of_frame.frame = done;
-    if (done > 0) {
+    if (done > 0 && !arguments.stills) {
       of_frame.motion = motion_between(before, robot);
       of_frame.odometry = wheels.measured(of_frame.motion);
       odometry = odometry * make_pose2<RobotFrame, RobotFrame>(of_frame.odometry.dx, of_frame.odometry.dy,
                                                                of_frame.odometry.dtheta);
-    } else {
+    }
+    if (done == 0) {
       ball_radius = state.ball.radius;
       RobotFile written = shoot.robot;
       written.camera = fs::absolute(folder) / "camera.yaml";
@@ -245,7 +247,7 @@ int sim_render_command(const RenderArguments& arguments) {
     odometry_lines.write(
         odometry_line({.sample = {.t = state.t, .x = odometry.x, .y = odometry.y, .theta = odometry.theta()}}));
     write_png_gray(folder / "labels" / frame_name(done), {view.width, view.height, view.labels});
-    const std::int64_t every = std::max<std::int64_t>(1, frames / kSampleFrames);
+    const std::int64_t every = arguments.stills ? 1 : std::max<std::int64_t>(1, frames / kSampleFrames);
     if (done % every == 0) {
       std::array<int, 256> pixels{};
       for (const std::uint8_t label : view.labels) ++pixels[label];
@@ -265,8 +267,8 @@ int sim_render_command(const RenderArguments& arguments) {
         "         tassilo run --robot {}/robot.yaml --source {}/video.mkv --odometry {}/odometry.jsonl --output "
         "scenes.jsonl\n"
         "         tassilo eval {}/gt.jsonl scenes.jsonl\n",
-        done < frames ? "interrupted: " : "", done, static_cast<double>(done) / arguments.fps, folder.string(),
-        folder.string(), folder.string(), folder.string(), folder.string(), folder.string(), folder.string());
+        done < frames ? "interrupted: " : "", done, static_cast<double>(done) / fps, folder.string(), folder.string(),
+        folder.string(), folder.string(), folder.string(), folder.string(), folder.string());
   return 0;
 }
 
@@ -297,6 +299,10 @@ Command add_sim_render(CLI::App& sim) {
   command->add_option("--seconds", arguments->seconds, "length [s]")
       ->check(CLI::Range(.001, 36000.))
       ->capture_default_str();
+  command
+      ->add_option("--stills", arguments->stills,
+                   "no drive, but so many pictures for training, in which everything is seen in turn")
+      ->check(CLI::Range(1, 10000));
   command->add_option("--fps", arguments->fps, "frames a second")->check(CLI::Range(.1, 1000.))->capture_default_str();
   command
       ->add_option("--seed", arguments->seed, "of motion, people, clutter and noise; the same gives the same recording")

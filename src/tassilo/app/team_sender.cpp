@@ -88,7 +88,7 @@ void TeamSender::begin(double first_t, bool is_live) {
 
 void TeamSender::say(const Frame& frame, const Scene& scene, const VisionWorkspace& workspace,
                      const std::shared_ptr<const Configuration>& configuration, const Odometry* odometry,
-                     std::optional<double> latency_s) {
+                     std::optional<double> latency_s, const TeamRole& role) {
   MessageContext context = context_of(options_.robot, configuration->setup);
   context.has_odometry = odometry != nullptr;
   Item item;
@@ -98,6 +98,9 @@ void TeamSender::say(const Frame& frame, const Scene& scene, const VisionWorkspa
   const ros::Time stamp = ros_time(item.t);
   item.messages = messages_of(scene, stamp, context, odometry, configuration->vision.optics() != nullptr);
   item.state = team_state_message(scene, stamp, context);
+  item.state.role = role.role;
+  item.state.action = role.action;
+  item.state.planning_state = role.planning_state;
   frames_.add(item.t, 1);
   item.state.frames = ++seen_;
   item.state.frame_rate = frames_.per_second(item.t);

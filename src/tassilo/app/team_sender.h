@@ -32,6 +32,11 @@ struct TeamSenderOptions {
   bool waits = false;  ///< The run waits for room: nothing is dropped.
 };
 
+/// What a player says of itself.
+struct TeamRole {
+  std::string role, action, planning_state;
+};
+
 /// Tells the team, and a log, what one robot sees, as messages of ROS 2.
 ///
 /// Messages are made where it is called; a thread of its own sends them, and draws and encodes pictures. The vision
@@ -53,7 +58,7 @@ class TeamSender {
   /// latency_s   from its capture until now; nothing when that is not known
   void say(const Frame& frame, const Scene& scene, const VisionWorkspace& workspace,
            const std::shared_ptr<const Configuration>& configuration, const Odometry* odometry,
-           std::optional<double> latency_s);
+           std::optional<double> latency_s, const TeamRole& role = {});
   /// All is sent, and the log complete. Throws Error when that failed.
   void finish();
   /// What happened since the last call, for people, in lines without their ends.

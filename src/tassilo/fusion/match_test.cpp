@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+#include <tuple>
 #include <vector>
 
 #include "tassilo/fusion/test_match.h"
@@ -23,7 +25,12 @@ struct Matches {
       append(surest, answers_of_surest(alone));
     }
   }
-  Figures team(double loss, double delay, int who = kBench, const TeamFusionOptions& options = {}) const {
+  const Figures& team(double loss, double delay, int who = kBench) const {
+    const auto [place, is_new] = known.try_emplace({loss, delay, who});
+    if (is_new) place->second = team_with(loss, delay, who, {});
+    return place->second;
+  }
+  Figures team_with(double loss, double delay, int who, const TeamFusionOptions& options) const {
     std::vector<Answer> all;
     for (std::size_t i = 0; i < matches.size(); ++i)
       append(all, answers_of_team(matches[i], {loss, delay, static_cast<unsigned>(i)}, who, options));
@@ -32,6 +39,7 @@ struct Matches {
 
   std::vector<Match> matches;
   std::vector<Answer> surest;
+  mutable std::map<std::tuple<double, double, int>, Figures> known;
 };
 const Matches& matches() {
   static const Matches all;
@@ -48,7 +56,7 @@ TEST(TeamBall, IsThereWhenAnyRobotSeesIt) {
       EXPECT_GT(matches().team(loss, delay).available, 0.95);
       EXPECT_GT(matches().team(loss, delay, 1).available, 0.95);
     }
-  EXPECT_GT(matches().team(0.6, 0.5).available, 0.94);  // 95.5 % of twenty matches, give or take one
+  EXPECT_GT(matches().team(0.6, 0.5).available, 0.94);  // .97 in forty matches, .948 in these six
 }
 
 TEST(TeamBall, IsNoWorseThanTheBestRobotAlone) {
@@ -71,7 +79,7 @@ TEST(TeamBall, CovarianceIsWhatErrorsAre) {
   EXPECT_LT(team.outside, 0.04);
   EXPECT_LT(disturbed.squared_median, 1.39 + 0.4);
   EXPECT_LT(disturbed.outside, 0.07);
-  const Figures as_news = matches().team(0, 0, kBench, {.pose_memory = 1e-3});
+  const Figures as_news = matches().team_with(0, 0, kBench, {.pose_memory = 1e-3});
   EXPECT_GT(as_news.squared_median, 2 * team.squared_median);
   EXPECT_GT(as_news.median, team.median);
 }

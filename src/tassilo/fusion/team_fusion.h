@@ -11,7 +11,7 @@
 #include "tassilo/geometry/point.h"
 #include "tassilo/scene/scene.h"
 
-// Ball and opponents as all robots of the team see them together. docs/decisions/0021 tells why it is done so.
+// Ball and opponents as all robots of the team see them together. docs/decisions/0022 tells why it is done so.
 
 namespace tassilo {
 
@@ -32,8 +32,8 @@ struct TeamFusionOptions {
   double kick_rate = 0.6;         ///< Kicks per second; 0: none. [1/s], >= 0
   double kick_duration = 0.2;     ///< How long the velocity goes on changing. [s], > 0
 
-  /// Time in which the correlation of a pose's error with itself falls to 1/e: it is that of the lines in view. [s], >
-  /// 0
+  /// Time in which the correlation of a pose's error with itself falls to 1/e: as long as the same lines are in view.
+  /// [s], > 0
   double pose_memory = 2;
   double max_pose_age = 3;         ///< Since the pose's last absolute fix; an older one is not used. [s], >= 0
   double max_pose_sigma = 1;       ///< A pose less certain in any direction is not used. [m], > 0
@@ -68,8 +68,7 @@ struct TeamThing {
   RecycledVector<int> robots;                                ///< Who saw it within max_age, by number.
 };
 struct TeamBall : TeamThing {
-  double weight =
-      0;  ///< How much it was seen lately: sightings, each with its confidence, fading within half a second.
+  double weight = 0;  ///< Confidences of its sightings, fading within a second.
 };
 struct TeamOpponent : TeamThing {
   Team team = Team::unknown;  ///< By most of its sightings.
@@ -128,7 +127,7 @@ class TeamFusion {
   Contribution add(const TeamObservation& observation, double now);
 
   /// What the team knows at t: by the observations up to t, from then on by prediction. Of a time before the history
-  /// nothing is known any more. Some 10 us for each observation that is new or younger than what came late; no memory
+  /// nothing is known any more. Some 5 us for each observation that is new or younger than what came late; no memory
   /// is allocated once the usual number of things was seen.
   TeamWorld at(double t);
 

@@ -28,7 +28,11 @@ constexpr int kLanes = 8;
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 constexpr float kLift = 1e-3F;  ///< Shadow rays start so far from surfaces. [m]
 constexpr int kGrainSize = 256;
-constexpr std::uint16_t kSkyBit = 1;
+constexpr double kTuft = .012;  ///< Of the carpet. [m]
+
+// Of cells of floor: what may darken them, and that marks are close.
+constexpr std::uint16_t kSkyBit = 1, kMarkBit = 0x8000;
+constexpr float kMarkReach = .1F;  ///< [m]
 
 // Objects of a view: 0 nothing that counts, 1 ball, then goals, then robots.
 constexpr int kBallObject = 1, kGoalObject = 2, kRobotObject = 16;
@@ -83,32 +87,37 @@ std::vector<PixelPoint> sub_pixels(int count) {
   return places;
 }
 
-/// What a step of one pixel is on the floor, robot frame; large where the floor is not seen. [m]
+/// What a step from one ray to the next is on the floor, robot frame; large where the floor is not seen. [m]
 struct Footprint {
   float cx, cy, rx, ry;
+  float size;   ///< [m]
+  float grain;  ///< Of the carpet's contrast, what such steps resolve. [1/100]
 };
 
-std::vector<Footprint> footprints_of(const MountedCamera& camera) {
+std::vector<Footprint> footprints_of(const MountedCamera& camera, int rays_per_side) {
   std::vector<Footprint> footprints;
   const auto step = [&](PixelPoint a, PixelPoint b) {
     const auto p = camera.floor_point(a), q = camera.floor_point(b);
-    return p && q ? *q - *p : FloorPoint{30, 30};
+    return p && q ? (1. / rays_per_side) * (*q - *p) : FloorPoint{30, 30};
   };
   for (int r = 0; r < camera.model().height; ++r)
     for (int c = 0; c < camera.model().width; ++c) {
       const FloorPoint column = step({c - .5, double(r)}, {c + .5, double(r)}),
                        row = step({double(c), r - .5}, {double(c), r + .5});
+      const double size = std::max(std::abs(column.x) + std::abs(row.x), std::abs(column.y) + std::abs(row.y));
       footprints.push_back({static_cast<float>(column.x), static_cast<float>(column.y), static_cast<float>(row.x),
-                            static_cast<float>(row.y)});
+                            static_cast<float>(row.y), static_cast<float>(size),
+                            static_cast<float>(.01 * std::min(1., kTuft / size))});
     }
   return footprints;
 }
 
-/// Brightness of carpet by place: tufts and a coarser pattern, a tile that repeats. Mean 0, about -1..1.
-std::vector<float> carpet_grain(std::uint64_t seed) {
+/// Brightness of carpet by place: tufts and a coarser pattern, a tile that repeats. Mean 0; 100 is 1.
+std::vector<std::int8_t> carpet_grain(std::uint64_t seed) {
   std::mt19937_64 engine(seed ^ 0xCA59E7U);
   const auto unit = [&] { return static_cast<float>(static_cast<double>(engine() >> 11U) * 0x1p-53 * 2 - 1); };
-  std::vector<float> grain(kGrainSize * kGrainSize), coarse(32 * 32);
+  std::vector<std::int8_t> grain(kGrainSize * kGrainSize);
+  std::vector<float> coarse(32 * 32);
   for (float& v : coarse) v = unit();
   for (int r = 0; r < kGrainSize; ++r)
     for (int c = 0; c < kGrainSize; ++c) {
@@ -120,7 +129,8 @@ std::vector<float> carpet_grain(std::uint64_t seed) {
       };
       const float smooth =
           (at(0, 0) * (1 - fx) + at(1, 0) * fx) * (1 - fy) + (at(0, 1) * (1 - fx) + at(1, 1) * fx) * fy;
-      grain[static_cast<std::size_t>(r * kGrainSize + c)] = .65F * unit() + .5F * smooth;
+      grain[static_cast<std::size_t>(r * kGrainSize + c)] =
+          static_cast<std::int8_t>(100 * (.65F * unit() + .5F * smooth));
     }
   return grain;
 }
@@ -129,16 +139,14 @@ ColorClass class_named(const std::string& name, ColorClass otherwise) {
   return color_class_from(name).value_or(otherwise);
 }
 
-/// Where a state's things are some time later or earlier, as they move.
-SimState moved(const SimState& state, double dt) {
-  SimState out = state;
-  out.ball.at = out.ball.at + dt * FieldPoint{state.ball.vx, state.ball.vy};
-  for (SimRobot& robot : out.robots) {
+/// Things some time later or earlier than they were, as they move.
+void move(SimState& state, double dt) {
+  state.ball.at = state.ball.at + dt * FieldPoint{state.ball.vx, state.ball.vy};
+  for (SimRobot& robot : state.robots) {
     const double middle = robot.theta + .5 * dt * robot.turn;
     robot.at = robot.at + dt * robot.speed * FieldPoint{std::cos(middle), std::sin(middle)};
     robot.theta += dt * robot.turn;
   }
-  return out;
 }
 
 }  // namespace
@@ -201,12 +209,12 @@ class Renderer::Work {
         camera_(camera),
         options_(options),
         stage_(make_stage(field, {options.clutter, options.people, options.ball_colored_people, options.seed})),
-        world_(stage_),
+        world_(stage_, options.quality == RenderQuality::full),
         lighting_(stage_, world_, options),
         marks_(field),
         sensor_(camera.model(), options),
         centers_(camera, 0, 0),
-        footprints_(footprints_of(camera)),
+        footprints_(footprints_of(camera, options.rays_per_side)),
         grain_(carpet_grain(options.seed)) {
     for (const PixelPoint& offset : sub_pixels(options.rays_per_side * options.rays_per_side))
       tables_.emplace_back(camera, offset.x, offset.y);
@@ -220,7 +228,11 @@ class Renderer::Work {
     near_y0_ = static_cast<float>(stage_.carpet_y.low - 1);
     near_columns_ = static_cast<int>((stage_.carpet_x.high - stage_.carpet_x.low + 2) / cell) + 1;
     near_rows_ = static_cast<int>((stage_.carpet_y.high - stage_.carpet_y.low + 2) / cell) + 1;
-    near_.resize(static_cast<std::size_t>(near_columns_) * static_cast<std::size_t>(near_rows_));
+    marked_.resize(static_cast<std::size_t>(near_columns_) * static_cast<std::size_t>(near_rows_));
+    for (int r = 0; r < near_rows_; ++r)
+      for (int c = 0; c < near_columns_; ++c)
+        if (marks_.exact({near_x0_ + (c + .5) * cell, near_y0_ + (r + .5) * cell}) < kMarkReach + .075)
+          marked_[static_cast<std::size_t>(r * near_columns_ + c)] = kMarkBit;
     hall_floor_ = Light(.09F, .088F, .085F, 0);
     green_ = paint_of(ColorClass::green);
     white_ = 1.04F * paint_of(ColorClass::white);
@@ -246,7 +258,9 @@ class Renderer::Work {
     const int samples = std::max<int>(1, static_cast<int>(tables_.size()));
     const float weight = 1.F / static_cast<float>(moments * samples);
     for (int m = 0; m < moments; ++m) {
-      set_scene(moments == 1 ? state : moved(state, ((m + .5) / moments - .5) * options_.shutter), observer);
+      moment_ = state;
+      if (moments > 1) move(moment_, ((m + .5) / moments - .5) * options_.shutter);
+      set_scene(moment_, observer);
       for (int s = 0; s < samples; ++s)
         add_light(tables_.empty() ? centers_ : tables_[static_cast<std::size_t>(s)], m * samples + s, weight);
     }
@@ -275,8 +289,8 @@ class Renderer::Work {
       for (int p = 0; p < per_row; ++p) {
         const std::size_t index = static_cast<std::size_t>(r * per_row + p);
         RTCRayHit8 rays;
-        const std::array<int, kLanes> valid = aim(centers_.packets[index], rays);
-        world_.intersect(valid.data(), rays);
+        const LaneMask valid = aim(centers_.packets[index], rays);
+        world_.intersect(valid, rays);
         for (int k = 0; k < kLanes; ++k) {
           const int c = p * kLanes + k;
           if (c >= width()) break;
@@ -297,13 +311,18 @@ class Renderer::Work {
     int object = 0;
     std::uint8_t label = 0;
   };
-  /// Where light comes from for one lane of a packet.
-  struct Point {
-    Vector3f at, normal;
-    Light albedo, glow;  ///< glow: light that needs no lamp at this time.
-    float gloss;
-    std::uint16_t near = 0;  ///< Bits of what may darken this place of the floor.
-    enum Kind { none, done, floor_near, solid } kind;
+  enum class Kind : std::uint8_t {
+    nothing,     ///< The ray leaves the world.
+    lit,         ///< `light` is all that it gets.
+    floor_near,  ///< What moves may darken it.
+    solid,       ///< Lamps add to it.
+  };
+  /// What a packet's rays hit; lanes beside each other, so that loops over them become vector instructions.
+  struct alignas(32) Points {
+    float x[kLanes], y[kLanes], z[kLanes], nx[kLanes], ny[kLanes], nz[kLanes], gloss[kLanes];
+    Light albedo[kLanes], light[kLanes];
+    std::uint16_t near[kLanes];  ///< Bits of what may darken a place of the floor.
+    Kind kind[kLanes];
   };
 
   int width() const { return camera_.model().width; }
@@ -378,7 +397,7 @@ class Renderer::Work {
   /// Marks the cells of floor that what moves darkens: a bit for each lamp whose shadow may lie there, and one for the
   /// sky. Lamps beyond the last bit share it.
   void mark_near() {
-    std::fill(near_.begin(), near_.end(), std::uint16_t{0});
+    near_ = marked_;
     for (const MovingPart& part : parts_) {
       const float top = part.shape == MovingPart::Shape::sphere ? part.z + part.radius : part.z + part.height;
       if (part.shape == MovingPart::Shape::sphere || part.z <= 0)
@@ -396,7 +415,7 @@ class Renderer::Work {
     }
   }
   static std::uint16_t lamp_bit(std::size_t lamp) {
-    return static_cast<std::uint16_t>(2U << std::min<std::size_t>(lamp, 14));
+    return static_cast<std::uint16_t>(2U << std::min<std::size_t>(lamp, 13));
   }
 
   /// All cells closer than `wide` to the stretch from (x0, y0) to (x1, y1).
@@ -424,8 +443,8 @@ class Renderer::Work {
     return near_[static_cast<std::size_t>(static_cast<int>(row) * near_columns_ + static_cast<int>(column))];
   }
 
-  std::array<int, kLanes> aim(const RayTable::Packet& packet, RTCRayHit8& rays) const {
-    alignas(32) std::array<int, kLanes> valid;
+  LaneMask aim(const RayTable::Packet& packet, RTCRayHit8& rays) const {
+    LaneMask valid;
     for (int k = 0; k < kLanes; ++k) {
       rays.ray.org_x[k] = eye_.x();
       rays.ray.org_y[k] = eye_.y();
@@ -440,7 +459,7 @@ class Renderer::Work {
       rays.ray.flags[k] = 0;
       rays.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
       rays.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
-      valid[static_cast<std::size_t>(k)] = packet.x[k] == packet.x[k] ? -1 : 0;
+      valid.lane[k] = packet.x[k] == packet.x[k] ? -1 : 0;
     }
     return valid;
   }
@@ -513,7 +532,7 @@ class Renderer::Work {
     std::array<int, kLanes> owner{};  // of lanes that this robot's parts have met already
     for (const MovingPart& part : parts_) {
       RTCRayHit8 rays;
-      const std::array<int, kLanes> valid = aim(packet, rays);
+      const LaneMask valid = aim(packet, rays);
       // Far from its bounding sphere no ray meets it.
       const float half = part.shape == MovingPart::Shape::sphere ? 0 : .5F * part.height;
       const Vector3f to = Vector3f(part.x, part.y, part.z + half) - eye_;
@@ -524,7 +543,7 @@ class Renderer::Work {
         close = along > 0 && to.squaredNorm() - along * along <= around * around;
       }
       if (!close) continue;
-      world_.intersect_part(valid.data(), part, rays);
+      world_.intersect_part(valid, part, rays);
       SimVisibility& of =
           part.object == kBallObject ? view_.ball : view_.robots[static_cast<std::size_t>(part.object - kRobotObject)];
       for (int k = 0; k < kLanes && c0 + k < width(); ++k) {
@@ -536,8 +555,8 @@ class Renderer::Work {
     }
     for (std::size_t g = 0; g < goals_.size(); ++g) {
       RTCRayHit8 rays;
-      const std::array<int, kLanes> valid = aim(packet, rays);
-      goals_[g]->intersect(valid.data(), rays);
+      const LaneMask valid = aim(packet, rays);
+      goals_[g]->intersect(valid, rays);
       for (int k = 0; k < kLanes && c0 + k < width(); ++k)
         if (hit_anything(rays, k) && through_mouth(place_hit(rays, k), static_cast<int>(g)))
           add_to_silhouette(view_.goals[g], c0 + k, r);
@@ -546,124 +565,125 @@ class Renderer::Work {
 
   void add_light(const RayTable& table, int sample, float weight) {
     const int per_row = packets_per_row();
+    RTCRayHit8 rays;
+    Points points;
+    std::fill(points.x, points.gloss + kLanes, 0.F);
     for (int r = 0; r < height(); ++r)
       for (int p = 0; p < per_row; ++p) {
-        RTCRayHit8 rays;
-        const std::array<int, kLanes> valid = aim(table.packets[static_cast<std::size_t>(r * per_row + p)], rays);
-        world_.intersect(valid.data(), rays);
-        std::array<Point, kLanes> points;
-        bool floor_near = false, solid = false;
+        const LaneMask valid = aim(table.packets[static_cast<std::size_t>(r * per_row + p)], rays);
+        world_.intersect(valid, rays);
         const int lanes = std::min(kLanes, width() - p * kLanes);
         const std::size_t first = static_cast<std::size_t>(r * width() + p * kLanes);
-        for (int k = 0; k < lanes; ++k) {
-          Point& point = points[static_cast<std::size_t>(k)];
-          point.kind = Point::none;
-          if (!hit_anything(rays, k)) continue;
-          set_point(rays, k, first + static_cast<std::size_t>(k), point);
-          if (options_.flat) {
-            point.kind = Point::done;
-            point.glow = point.albedo;
-          }
-          floor_near = floor_near || point.kind == Point::floor_near;
-          solid = solid || point.kind == Point::solid;
+        bool by_lamps = false;
+        for (int k = 0; k < kLanes; ++k) {
+          points.kind[k] = Kind::nothing;
+          if (k >= lanes || !hit_anything(rays, k)) continue;
+          set_point(rays, k, first + static_cast<std::size_t>(k), points);
+          by_lamps = by_lamps || points.kind[k] > Kind::lit;
         }
-        if (floor_near || solid) light_points(points, lanes, first, sample);
-        for (int k = 0; k < lanes; ++k)
-          if (points[static_cast<std::size_t>(k)].kind != Point::none)
-            light_[first + static_cast<std::size_t>(k)] += weight * points[static_cast<std::size_t>(k)].glow;
+        if (by_lamps && !options_.flat) add_lamps(points, first, sample);
+        for (int k = 0; k < lanes; ++k) {
+          if (points.kind[k] == Kind::nothing) continue;
+          Light& pixel = light_[first + static_cast<std::size_t>(k)];
+          pixel +=
+              options_.flat ? Light(weight * points.albedo[k]) : Light(weight * points.albedo[k] * points.light[k]);
+        }
       }
   }
 
-  void set_point(const RTCRayHit8& rays, int k, std::size_t pixel, Point& point) const {
-    point.at = place_hit(rays, k);
-    point.gloss = 0;
+  void set_point(const RTCRayHit8& rays, int k, std::size_t pixel, Points& points) const {
+    const Vector3f at = place_hit(rays, k);
+    points.x[k] = at.x();
+    points.y[k] = at.y();
+    points.z[k] = at.z();
+    points.gloss[k] = 0;
+    const auto set_normal = [&](const Vector3f& normal) {
+      points.nx[k] = normal.x();
+      points.ny[k] = normal.y();
+      points.nz[k] = normal.z();
+    };
     if (const MovingPart* part = part_hit(rays, k)) {
-      point.kind = Point::solid;
-      point.gloss = part->gloss;
-      const float x = point.at.x() - part->x, y = point.at.y() - part->y;
+      points.kind[k] = Kind::solid;
+      points.gloss[k] = part->gloss;
+      const float x = at.x() - part->x, y = at.y() - part->y;
+      Vector3f normal(0, 0, 1);
+      points.albedo[k] = part->paint;
       if (part->shape == MovingPart::Shape::sphere) {
-        point.normal = Vector3f(x, y, point.at.z() - part->z) / part->radius;
-        point.albedo = part->paint;
-      } else if (point.at.z() > part->z + part->height * .9999F) {
-        point.normal = {0, 0, 1};
-        point.albedo = part->paint;
-      } else {
-        point.normal = Vector3f(x, y, 0).normalized();
-        point.albedo = in_band(*part, point.at.z()) ? part->band : part->paint;
+        normal = Vector3f(x, y, at.z() - part->z) / part->radius;
+      } else if (at.z() < part->z + part->height * .9999F) {
+        normal = Vector3f(x, y, 0) / part->radius;
+        if (in_band(*part, at.z())) points.albedo[k] = part->band;
       }
+      set_normal(normal);
       // Near the floor less light comes from below: dark undersides.
-      const float open = part->shape == MovingPart::Shape::sphere
-                             ? std::clamp(.06F + .75F * (1 + point.normal.z()), 0.F, 1.F)
-                             : std::clamp(.45F + point.at.z() / .35F, 0.F, 1.F);
-      point.glow = point.albedo * (.5F * (1 + point.normal.z()) * lighting_.above() +
-                                   .5F * open * (1 - point.normal.z()) * lighting_.below());
+      const float open = part->shape == MovingPart::Shape::sphere ? std::clamp(.06F + .75F * (1 + normal.z()), 0.F, 1.F)
+                                                                  : std::clamp(.45F + at.z() / .35F, 0.F, 1.F);
+      points.light[k] = .5F * (1 + normal.z()) * lighting_.above() + .5F * open * (1 - normal.z()) * lighting_.below();
       return;
     }
     const Stage::Triangle& triangle = stage_.triangles[rays.hit.primID[k]];
     const Surface& surface = stage_.surfaces[triangle.surface];
     if (surface.is_floor) {
-      set_floor(pixel, point);
+      set_normal({0, 0, 1});
+      set_floor(at.x(), at.y(), k, pixel, points);
       return;
     }
-    const float u = rays.hit.u[k], v = rays.hit.v[k];
-    point.normal = ((1 - u - v) * stage_.normals[triangle.corners[0]] + u * stage_.normals[triangle.corners[1]] +
-                    v * stage_.normals[triangle.corners[2]]);
-    if (point.normal.x() * rays.ray.dir_x[k] + point.normal.y() * rays.ray.dir_y[k] +
-            point.normal.z() * rays.ray.dir_z[k] >
-        0)
-      point.normal = -point.normal;
-    point.albedo = surface.albedo;
-    point.gloss = surface.gloss;
-    point.glow = point.albedo * lighting_.ambient(point.normal);
-    point.kind = Point::solid;
-    if (surface.is_outside) {
-      for (const Lighting::Lamp& lamp : lighting_.lamps())
-        point.glow += point.albedo * Lighting::share(lamp, point.at, point.normal) * lamp.color;
-      point.kind = Point::done;
+    const float u = rays.hit.u[k], v = rays.hit.v[k], w = 1 - u - v;
+    const auto& [a, b, c] = triangle.corners;
+    Vector3f normal = w * stage_.normals[a] + u * stage_.normals[b] + v * stage_.normals[c];
+    const bool back = normal.dot(Vector3f(rays.ray.dir_x[k], rays.ray.dir_y[k], rays.ray.dir_z[k])) > 0;
+    points.albedo[k] = surface.albedo;
+    if (surface.is_outside || options_.quality == RenderQuality::fast) {
+      points.light[k] =
+          w * lighting_.at_corner(a, back) + u * lighting_.at_corner(b, back) + v * lighting_.at_corner(c, back);
+      points.kind[k] = Kind::lit;
+      return;
     }
+    if (back) normal = -normal;
+    set_normal(normal);
+    points.light[k] = lighting_.ambient(normal);
+    points.kind[k] = Kind::solid;
   }
 
-  void set_floor(std::size_t pixel, Point& point) const {
-    const float x = point.at.x(), y = point.at.y();
-    point.normal = {0, 0, 1};
-    point.kind = Point::done;
+  void set_floor(float x, float y, int k, std::size_t pixel, Points& points) const {
+    points.kind[k] = Kind::lit;
+    points.light[k] = lighting_.floor(x, y);
     if (!on_carpet(x, y)) {
-      point.albedo = hall_floor_;
-      point.glow = hall_floor_ * lighting_.floor(x, y);
+      points.albedo[k] = hall_floor_;
       return;
     }
     const Footprint& step = footprints_[pixel];
-    const float share = 1.F / static_cast<float>(options_.rays_per_side);
-    // The carpet's grain, as far as the pixels resolve it.
-    const float size = share * std::max(std::abs(step.cx) + std::abs(step.rx), std::abs(step.cy) + std::abs(step.ry));
-    constexpr float tuft = 1 / .012F;
+    constexpr auto tuft = static_cast<float>(1 / kTuft);
     const auto tile = [](float v) {
       return static_cast<std::size_t>(static_cast<int>(v * tuft + 65536.F)) & (kGrainSize - 1);
     };
-    const float grain = grain_[tile(y) * kGrainSize + tile(x)] * std::min(1.F, .012F / size);
-    point.albedo = (1 + static_cast<float>(options_.carpet) * grain) * green_;
+    const float grain = step.grain * static_cast<float>(grain_[tile(y) * kGrainSize + tile(x)]);
+    points.albedo[k] = (1 + static_cast<float>(options_.carpet) * grain) * green_;
 
+    const std::uint16_t bits = near_bits(x, y);
+    points.near[k] = bits & static_cast<std::uint16_t>(~kMarkBit);
+    if (points.near[k] != 0) points.kind[k] = Kind::floor_near;
+    if ((bits & kMarkBit) == 0 && step.size < kMarkReach) return;
     FloorMarks::Near near = marks_.near(x, y);
     if (near.in_table) {
-      if (std::abs(near.distance) < 1.6F * marks_.cell()) near.distance = static_cast<float>(marks_.exact({x, y}));
+      if (std::abs(near.distance) < 1.6F * marks_.cell() && options_.quality == RenderQuality::full)
+        near.distance = static_cast<float>(marks_.exact({x, y}));
       // Of the pixel's square, what lies within the mark: edges cross it straight.
       const float gx = cos_ * near.gx + sin_ * near.gy, gy = cos_ * near.gy - sin_ * near.gx;  // robot frame
-      const float across =
-          share * (std::abs(gx * step.cx + gy * step.cy) + std::abs(gx * step.rx + gy * step.ry)) + 1e-6F;
-      const auto within = [&](float distance) { return std::clamp(.5F - distance / across, 0.F, 1.F); };
-      const float covered = within(near.distance) - within(near.distance + marks_.line_width());
-      if (covered > 0) point.albedo += covered * (white_ - point.albedo);
+      const float across = std::abs(gx * step.cx + gy * step.cy) + std::abs(gx * step.rx + gy * step.ry) + 1e-6F;
+      if (near.distance < .5F * across) {
+        const auto within = [&](float distance) { return std::clamp(.5F - distance / across, 0.F, 1.F); };
+        const float covered = within(near.distance) - within(near.distance + marks_.line_width());
+        if (covered > 0) points.albedo[k] += covered * (white_ - points.albedo[k]);
+      }
     }
-    point.glow = point.albedo * lighting_.floor(x, y);
-    point.near = near_bits(x, y);
-    if (point.near != 0) point.kind = Point::floor_near;
   }
 
   /// Share of the sky that what moves hides from a floor point.
-  float hidden_sky(const Vector3f& at) const {
+  float hidden_sky(float x, float y) const {
     float hidden = 0;
     for (const MovingPart& part : parts_) {
-      const float dx = at.x() - part.x, dy = at.y() - part.y, square = dx * dx + dy * dy;
+      const float dx = x - part.x, dy = y - part.y, square = dx * dx + dy * dy;
       if (square > 1) continue;
       if (part.shape == MovingPart::Shape::sphere) {
         // The form factor of a sphere above a plane: R^2 cos / d^2 of its centre.
@@ -678,66 +698,84 @@ class Renderer::Work {
     return std::min(hidden, .95F);
   }
 
-  void light_points(std::array<Point, kLanes>& points, int lanes, std::size_t first, int sample) {
+  /// Adds the light of lamps to solids, and takes it and the sky's from floor that things hide from them.
+  void add_lamps(Points& points, std::size_t first, int sample) {
     const bool full = options_.quality == RenderQuality::full;
-    alignas(32) std::array<int, kLanes> floors{}, solids{};
+    LaneMask floors, solids;
     std::uint16_t near = 0;
-    bool any_solid = false;
-    for (int k = 0; k < lanes; ++k) {
-      const auto lane = static_cast<std::size_t>(k);
-      Point& point = points[lane];
-      if (point.kind == Point::floor_near) {
-        if ((point.near & kSkyBit) != 0) point.glow -= point.albedo * lighting_.above() * hidden_sky(point.at);
-        floors[lane] = -1;
-        near |= point.near;
-      } else if (point.kind == Point::solid) {
-        solids[lane] = -1;
-        any_solid = true;
+    bool any_solid = false, any_gloss = false;
+    alignas(32) float lit[kLanes], red[kLanes]{}, green[kLanes]{}, blue[kLanes]{};
+    for (int k = 0; k < kLanes; ++k) {
+      const Kind kind = points.kind[k];
+      lit[k] = kind == Kind::solid ? 1.F : 0.F;
+      floors.lane[k] = kind == Kind::floor_near ? -1 : 0;
+      solids.lane[k] = kind == Kind::solid ? -1 : 0;
+      if (kind == Kind::floor_near) {
+        near |= points.near[k];
+        if ((points.near[k] & kSkyBit) != 0)
+          points.light[k] -= hidden_sky(points.x[k], points.y[k]) * lighting_.above();
       }
+      any_solid = any_solid || kind == Kind::solid;
+      any_gloss = any_gloss || (kind == Kind::solid && points.gloss[k] > 0);
     }
+    const bool any_lit = std::any_of(lit, lit + kLanes, [](float l) { return l > 0; });
     const std::size_t spin = mixed(first) + static_cast<std::size_t>(sample);
-    alignas(32) RTCRay8 rays;
+    RTCRay8 rays;
     for (std::size_t l = 0; l < lighting_.lamps().size(); ++l) {
       const Lighting::Lamp& lamp = lighting_.lamps()[l];
       const bool shaded_floor = (near & lamp_bit(l)) != 0, shaded_solid = any_solid && full;
+      if (!shaded_floor && !any_lit) continue;
+      // How much of the lamp's light is added; on the floor it is there already and taken away.
+      alignas(32) float share[kLanes];
+      for (int k = 0; k < kLanes; ++k) {
+        const float x = lamp.x - points.x[k], y = lamp.y - points.y[k], z = lamp.z - points.z[k];
+        const float facing = x * points.nx[k] + y * points.ny[k] + z * points.nz[k],
+                    square = x * x + y * y + z * z + 1e-6F;
+        share[k] = (z > 0 ? std::max(facing, 0.F) : 0.F) / (square * std::sqrt(square));
+      }
       if (shaded_floor || shaded_solid) {
-        aim_at_lamp(lamp, points, lanes, spin + 67 * l, rays);
-        if (shaded_floor) world_.occluded(floors.data(), rays, false, true);
-        if (shaded_solid) world_.occluded(solids.data(), rays, true, true);
-      }
-      for (int k = 0; k < lanes; ++k) {
-        const auto lane = static_cast<std::size_t>(k);
-        Point& point = points[lane];
-        if (shaded_floor && floors[lane] != 0) {
-          if (rays.tfar[k] < 0) point.glow -= point.albedo * Lighting::share(lamp, point.at, point.normal) * lamp.color;
-        } else if (solids[lane] != 0 && !(shaded_solid && rays.tfar[k] < 0)) {
-          point.glow += point.albedo * Lighting::share(lamp, point.at, point.normal) * lamp.color;
-          if (point.gloss > 0) point.glow += highlight(point, lamp) * lamp.color;
+        aim_at_lamp(lamp, points, spin + 67 * l, rays);
+        if (shaded_floor) world_.occluded(floors, rays, false, true);
+        if (shaded_solid) world_.occluded(solids, rays, true, true);
+        for (int k = 0; k < kLanes; ++k) {
+          const float dark = rays.tfar[k] < 0 ? 1.F : 0.F;
+          share[k] *= floors.lane[k] != 0 ? -dark : lit[k] * (1 - dark);
         }
+      } else {
+        for (int k = 0; k < kLanes; ++k) share[k] *= lit[k];
       }
+      for (int k = 0; k < kLanes; ++k) {
+        red[k] += share[k] * lamp.color[0];
+        green[k] += share[k] * lamp.color[1];
+        blue[k] += share[k] * lamp.color[2];
+      }
+      if (any_gloss)
+        for (int k = 0; k < kLanes; ++k)
+          // Highlights have the lamp's color, not the paint's.
+          if (points.gloss[k] > 0 && share[k] > 0)
+            points.light[k] += highlight(points, k, lamp) * lamp.color / (points.albedo[k] + 1e-4F);
     }
-    for (int k = 0; k < lanes; ++k)
-      if (floors[static_cast<std::size_t>(k)] != 0) {
-        Point& point = points[static_cast<std::size_t>(k)];
-        point.glow = point.glow.max(.05F * point.albedo * lighting_.above());
-      }
+    for (int k = 0; k < kLanes; ++k) {
+      points.light[k] += Light(red[k], green[k], blue[k], 0);
+      if (floors.lane[k] != 0) points.light[k] = points.light[k].max(.05F * lighting_.above());
+    }
   }
 
   /// From the points to places all over the lamp, other ones for each.
-  static void aim_at_lamp(const Lighting::Lamp& lamp, const std::array<Point, kLanes>& points, int lanes,
-                          std::size_t spin, RTCRay8& rays) {
+  static void aim_at_lamp(const Lighting::Lamp& lamp, const Points& points, std::size_t spin, RTCRay8& rays) {
     const auto& disc = disc_points();
     for (int k = 0; k < kLanes; ++k) {
-      const auto lane = static_cast<std::size_t>(k);
-      const auto& [dx, dy] = disc[(spin + 29 * lane) & 255U];
-      const bool used = k < lanes && points[lane].kind != Point::none;
-      const Vector3f from = used ? Vector3f(points[lane].at + kLift * points[lane].normal) : Vector3f(0, 0, 0);
-      rays.org_x[k] = from.x();
-      rays.org_y[k] = from.y();
-      rays.org_z[k] = from.z();
-      rays.dir_x[k] = lamp.x + lamp.radius * dx - from.x();
-      rays.dir_y[k] = lamp.y + lamp.radius * dy - from.y();
-      rays.dir_z[k] = lamp.z - from.z();
+      const auto& [dx, dy] = disc[(spin + 29 * static_cast<std::size_t>(k)) & 255U];
+      rays.dir_x[k] = lamp.radius * dx;
+      rays.dir_y[k] = lamp.radius * dy;
+    }
+    for (int k = 0; k < kLanes; ++k) {
+      rays.org_x[k] = points.x[k] + kLift * points.nx[k];
+      rays.org_y[k] = points.y[k] + kLift * points.ny[k];
+      rays.org_z[k] = points.z[k] + kLift * points.nz[k];
+      rays.dir_x[k] += lamp.x - rays.org_x[k];
+      rays.dir_y[k] += lamp.y - rays.org_y[k];
+      rays.dir_z[k] = lamp.z - rays.org_z[k];
       rays.tnear[k] = 0;
       rays.tfar[k] = .98F;
       rays.time[k] = 0;
@@ -747,13 +785,13 @@ class Renderer::Work {
   }
 
   /// Blinn, "Models of light reflection for computer synthesized pictures", SIGGRAPH 1977.
-  float highlight(const Point& point, const Lighting::Lamp& lamp) const {
-    const Vector3f to_lamp = (Vector3f(lamp.x, lamp.y, lamp.z) - point.at);
-    const Vector3f half = (to_lamp.normalized() + (eye_ - point.at).normalized()).normalized();
-    const float facing = half.dot(point.normal);
+  float highlight(const Points& points, int k, const Lighting::Lamp& lamp) const {
+    const Vector3f at(points.x[k], points.y[k], points.z[k]), to_lamp = Vector3f(lamp.x, lamp.y, lamp.z) - at;
+    const Vector3f half = (to_lamp.normalized() + (eye_ - at).normalized()).normalized();
+    const float facing = half.dot(Vector3f(points.nx[k], points.ny[k], points.nz[k]));
     if (facing <= .8F) return 0;
     const float f2 = facing * facing, f4 = f2 * f2, f8 = f4 * f4, f16 = f8 * f8, f32 = f16 * f16;
-    return point.gloss * f32 * f16 / to_lamp.squaredNorm();
+    return points.gloss[k] * f32 * f16 / to_lamp.squaredNorm();
   }
 
   FrameBuffer free_buffer() {
@@ -777,15 +815,16 @@ class Renderer::Work {
   RayTable centers_;
   std::vector<RayTable> tables_;  ///< Empty: one ray a pixel, through its centre.
   std::vector<Footprint> footprints_;
-  std::vector<float> grain_;
+  std::vector<std::int8_t> grain_;
   std::vector<std::unique_ptr<RayWorld>> goals_;
   Light hall_floor_, green_, white_;
 
+  SimState moment_;
   FieldFromRobot pose_;
   Vector3f eye_;
   float cos_ = 1, sin_ = 0;
   std::vector<MovingPart> parts_;
-  std::vector<std::uint16_t> near_;  ///< Cells of floor, .1 m; bits of mark_near.
+  std::vector<std::uint16_t> marked_, near_;  ///< Cells of floor, .1 m; bits of mark_near.
   int near_columns_ = 0, near_rows_ = 0;
   float near_x0_ = 0, near_y0_ = 0;
   std::vector<Light> light_;

@@ -96,7 +96,9 @@ struct SimView {
 /// Rays are those of the camera model at every pixel, computed once; edges are where they are to a few thousandths of a
 /// pixel. The same options, state and camera give the same bytes.
 ///
-/// cost     construction up to a second; no allocation a frame but the first ones and for more robots than before.
+/// cost     construction up to a second. No allocation a frame but for the first ones, for more robots than before, and
+///          two that Embree makes when things move. 3 to 7 ms a frame of 384x172 in fast quality; see
+///          bench/sim_bench.cpp.
 /// threads  one at a time.
 class Renderer {
  public:

@@ -180,6 +180,32 @@ SimMotion scripted_motion(const FieldModel& field, const ScriptOptions& options)
   return [script = std::make_shared<Script>(field, options)](double t) { return script->at(t); };
 }
 
+SimMotion scripted_stills(const FieldModel& field, const ScriptOptions& options) {
+  options.check();
+  return [field, options](double t) {
+    const auto still = static_cast<std::uint64_t>(std::max(0., std::floor(t + .5)));
+    ScriptOptions changed = options;
+    changed.seed = options.seed * 1000 + still;
+    SimState state = Script(field, changed).at(0);
+    state.t = t;
+    SimRobot& me = state.robots.front();
+    const FieldExtent extent = field_extent(field);
+    const std::uint64_t turn = still % 4;
+    FieldPoint aim = state.ball.at;
+    if (turn == 1 || turn == 2) aim = {turn == 1 ? extent.x.high : extent.x.low, 0};
+    if (turn == 3 && state.robots.size() > 1) aim = state.robots[1 + still / 4 % (state.robots.size() - 1)].at;
+    me.theta = bearing(aim - me.at);
+    // The ball close by, so that its color is seen from near and far.
+    const double ahead = me.radius + (turn == 0 ? 4 : 12) * state.ball.radius,
+                 aside = (turn % 2 == 0 ? 2 : -5) * state.ball.radius;
+    const FieldPoint near =
+        make_pose2<FieldFrame, RobotFrame>(me.at.x, me.at.y, me.theta) * FloorPoint{ahead + me.radius, aside};
+    if (near.x > extent.x.low && near.x < extent.x.high && near.y > extent.y.low && near.y < extent.y.high)
+      state.ball.at = near;
+    return state;
+  };
+}
+
 RobotMotion motion_between(const SimRobot& before, const SimRobot& after) {
   const auto robot_from_field = inverse(make_pose2<FieldFrame, RobotFrame>(before.at.x, before.at.y, before.theta));
   const FloorPoint to = robot_from_field * after.at;

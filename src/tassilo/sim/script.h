@@ -29,6 +29,10 @@ struct ScriptOptions {
 /// Deterministic by its options; the state at 0 is where all start.
 SimMotion scripted_motion(const FieldModel& field, const ScriptOptions& options);
 
+/// No motion but pictures for training: every second, everybody stands somewhere else, and the one that looks has in
+/// turn the ball, each goal and a robot before it.
+SimMotion scripted_stills(const FieldModel& field, const ScriptOptions& options);
+
 /// From frame to frame, in the robot frame of the frame before.
 struct RobotMotion {
   double dx = 0, dy = 0, dtheta = 0;  ///< [m, m, rad]

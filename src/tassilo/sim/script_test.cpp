@@ -56,6 +56,15 @@ TEST(Script, RobotsAreNumberedAndOfBothTeams) {
   EXPECT_EQ(state.robots[1].team, Team::cyan);
 }
 
+TEST(Script, StillsShowOneSceneAfterTheOther) {
+  const SimMotion stills = scripted_stills(read_field("msl98"), {.seed = 2});
+  const SimState first = stills(0), second = stills(1);
+  EXPECT_GT(distance(first.robots[0].at, second.robots[0].at), .01);
+  EXPECT_EQ(second.t, 1);
+  const FieldPoint to_goal = FieldPoint{4.11, 0} - second.robots[0].at;
+  EXPECT_NEAR(wrap_angle(bearing(to_goal) - second.robots[0].theta), 0, 1e-9);
+}
+
 TEST(SlippingWheels, DriftButTellTheWayRoughly) {
   SlippingWheels wheels(4);
   RobotMotion sum;

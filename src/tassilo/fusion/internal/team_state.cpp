@@ -15,7 +15,7 @@ namespace {
 constexpr double kFarthest = 1000;     ///< No field reaches there. [m]
 constexpr double kLeastSigma = 0.001;  ///< Nothing is seen better. [m]
 constexpr double kLongestStep = 0.1;   ///< Between rolling and kicked it may change so often. [s]
-constexpr double kWeightMemory = 0.5;  ///< [s]
+constexpr double kWeightMemory = 0.7;  ///< [s]
 constexpr double kLately = 0.3;        ///< [s]
 constexpr double kDoubt = 0.7;
 constexpr double kMateSpeed = 1;   ///< A teammate may drive on so fast since it told where it is. Sigma, [m/s]

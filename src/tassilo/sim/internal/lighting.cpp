@@ -83,6 +83,16 @@ Lighting::Lighting(const Stage& stage, const RayWorld& world, const RenderOption
   // The floor gives back some of its green, the walls and the hall some white.
   below_ = .95F * above_ + Light(.14F, .17F, .14F, 0);
 
+  const auto unshaded = [&](const Eigen::Vector3f& at, const Eigen::Vector3f& normal) {
+    Light sum = this->ambient(normal);
+    for (const Lamp& lamp : lamps_) sum += share(lamp, at, normal) * lamp.color;
+    return sum;
+  };
+  for (std::size_t k = 0; k < stage.vertices.size(); ++k) {
+    fronts_.push_back(unshaded(stage.vertices[k], stage.normals[k]));
+    backs_.push_back(unshaded(stage.vertices[k], -stage.normals[k]));
+  }
+
   const double length = stage.hall_x.high - stage.hall_x.low, width = stage.hall_y.high - stage.hall_y.low;
   const double cell = std::max(.1, std::sqrt(length * width) / 120);
   x0_ = static_cast<float>(stage.hall_x.low);
@@ -94,7 +104,7 @@ Lighting::Lighting(const Stage& stage, const RayWorld& world, const RenderOption
   rows_limit_ = static_cast<float>(rows_ - 2) + .999F;
   floor_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
   const auto& disc = disc_points();
-  const std::array<int, 8> valid{-1, -1, -1, -1, -1, -1, -1, -1};
+  constexpr LaneMask valid{{-1, -1, -1, -1, -1, -1, -1, -1}};
   for (int r = 0; r < rows_; ++r)
     for (int c = 0; c < columns_; ++c) {
       const Eigen::Vector3f at(x0_ + static_cast<float>(c * cell), y0_ + static_cast<float>(r * cell), 0);
@@ -118,7 +128,7 @@ Lighting::Lighting(const Stage& stage, const RayWorld& world, const RenderOption
           rays.tfar[k] = .98F;
           rays.mask[k] = ~0U;
         }
-        world.occluded(valid.data(), rays, true, false);
+        world.occluded(valid, rays, true, false);
         const auto clear = std::count_if(rays.tfar, rays.tfar + 8, [](float far) { return far > 0; });
         sum += static_cast<float>(clear) / 8 * share(lamp, at, up) * lamp.color;
       }

@@ -35,6 +35,10 @@ class Lighting {
   const Light& above() const { return above_; }
   const Light& below() const { return below_; }
 
+  /// Of all lamps and from all sides at a place of the stage's triangle, on the side that `normal` is of or on its
+  /// back; without shadows.
+  const Light& at_corner(std::uint32_t vertex, bool back) const { return (back ? backs_ : fronts_)[vertex]; }
+
   /// At the floor, with the shadows of what stands still; ambient light included.
   Light floor(float x, float y) const {
     const float column = std::clamp((x - x0_) * per_cell_, 0.F, columns_limit_);
@@ -51,6 +55,7 @@ class Lighting {
   std::vector<Lamp> lamps_;
   Light above_, below_;
   std::vector<Light> floor_;
+  std::vector<Light> fronts_, backs_;  ///< At the stage's vertices.
   int columns_ = 0, rows_ = 0;
   float x0_ = 0, y0_ = 0, per_cell_ = 1, columns_limit_ = 0, rows_limit_ = 0;
 };

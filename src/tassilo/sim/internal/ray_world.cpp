@@ -71,11 +71,12 @@ RtcScene RayWorld::new_scene(RTCSceneFlags flags) const {
   return scene;
 }
 
-RayWorld::RayWorld(const Stage& stage) : device_(rtcNewDevice("threads=1,set_affinity=0")) {
+RayWorld::RayWorld(const Stage& stage, bool watertight) : device_(rtcNewDevice("threads=1,set_affinity=0")) {
   if (!device_) throw Error("embree", "cannot be started on this machine");
-  stage_ = new_scene(RTC_SCENE_FLAG_ROBUST);
-  sphere_ = new_scene(RTC_SCENE_FLAG_ROBUST);
-  cylinder_ = new_scene(RTC_SCENE_FLAG_ROBUST);
+  const RTCSceneFlags flags = watertight ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE;
+  stage_ = new_scene(flags);
+  sphere_ = new_scene(flags);
+  cylinder_ = new_scene(flags);
   moving_ = new_scene(RTC_SCENE_FLAG_DYNAMIC);
   std::vector<std::array<std::uint32_t, 3>> triangles;
   for (const Stage::Triangle& triangle : stage.triangles) triangles.push_back(triangle.corners);
@@ -111,19 +112,19 @@ void RayWorld::place(std::span<const MovingPart> parts) {
   rtcCommitScene(moving_.get());
 }
 
-void RayWorld::intersect(const int* valid, RTCRayHit8& rays) const {
+void RayWorld::intersect(const LaneMask& valid, RTCRayHit8& rays) const {
   RTCIntersectContext context = coherent_context();
-  rtcIntersect8(valid, stage_.get(), &context, &rays);
-  rtcIntersect8(valid, moving_.get(), &context, &rays);
+  rtcIntersect8(valid.lane, stage_.get(), &context, &rays);
+  rtcIntersect8(valid.lane, moving_.get(), &context, &rays);
 }
 
-void RayWorld::occluded(const int* valid, RTCRay8& rays, bool by_stage, bool by_parts) const {
+void RayWorld::occluded(const LaneMask& valid, RTCRay8& rays, bool by_stage, bool by_parts) const {
   RTCIntersectContext context = coherent_context();
-  if (by_parts) rtcOccluded8(valid, moving_.get(), &context, &rays);
-  if (by_stage) rtcOccluded8(valid, stage_.get(), &context, &rays);
+  if (by_parts) rtcOccluded8(valid.lane, moving_.get(), &context, &rays);
+  if (by_stage) rtcOccluded8(valid.lane, stage_.get(), &context, &rays);
 }
 
-void RayWorld::intersect_part(const int* valid, const MovingPart& part, RTCRayHit8& rays) const {
+void RayWorld::intersect_part(const LaneMask& valid, const MovingPart& part, RTCRayHit8& rays) const {
   RTCIntersectContext context = coherent_context();
   const float up = part.shape == MovingPart::Shape::sphere ? part.radius : part.height;
   for (int k = 0; k < 8; ++k) {
@@ -134,7 +135,7 @@ void RayWorld::intersect_part(const int* valid, const MovingPart& part, RTCRayHi
     rays.ray.dir_y[k] /= part.radius;
     rays.ray.dir_z[k] /= up;
   }
-  rtcIntersect8(valid, part.shape == MovingPart::Shape::sphere ? sphere_.get() : cylinder_.get(), &context, &rays);
+  rtcIntersect8(valid.lane, part.shape == MovingPart::Shape::sphere ? sphere_.get() : cylinder_.get(), &context, &rays);
 }
 
 }  // namespace tassilo

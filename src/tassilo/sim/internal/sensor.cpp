@@ -11,8 +11,8 @@
 namespace tassilo {
 namespace {
 
-constexpr int kTones = 8192;
-constexpr std::size_t kNoise = 1U << 14U;
+constexpr int kTones = 4096;
+constexpr std::size_t kNoise = 1U << 13U;
 
 /// sRGB's curve (IEC 61966-2-1), as cameras have about.
 float tone(double light) {
@@ -119,14 +119,13 @@ void Sensor::develop(std::span<Light> light, std::uint64_t seed, const RenderOpt
   for (int r = 0; r < height_; ++r) {
     const std::size_t first = static_cast<std::size_t>(r) * width;
     std::size_t at = mixed(seed + static_cast<std::uint64_t>(r));
-    const std::size_t step = (at >> 40U) | 1U;
     std::uint8_t* y = into.planes[0] + r * into.strides[0];
     if (!halved_rows || r % 2 == 0) std::fill(chroma_.begin(), chroma_.end(), 0.F);
     for (std::size_t c = 0; c < width; ++c) {
       Light v = exposure * vignette_[first + c] * light[first + c];
       if (noisy) {
         v += (read + shot * v.max(0.F)).sqrt() * noise_[at & (kNoise - 1)];
-        at += step;
+        ++at;
       }
       v = (v.max(0.F).min(1.F)) * static_cast<float>(kTones);
       const float red = tone_[static_cast<std::size_t>(v[0])], green = tone_[static_cast<std::size_t>(v[1])],

@@ -44,15 +44,26 @@ class Builder {
     return static_cast<std::uint32_t>(stage.surfaces.size() - 1);
   }
 
+  /// In pieces, as light is baked at their corners.
   void quad(const std::array<Vector3f, 4>& corners, std::uint32_t surface) {
-    const Vector3f normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
+    const Vector3f u = corners[1] - corners[0], v = corners[3] - corners[0], normal = u.cross(v).normalized();
+    const Surface& of = stage.surfaces[surface];
+    const float piece = of.is_floor ? 1e3F : of.is_outside ? 1.F : .4F;
+    const auto columns = static_cast<std::uint32_t>(std::max(1.F, std::ceil(u.norm() / piece)));
+    const auto rows = static_cast<std::uint32_t>(std::max(1.F, std::ceil(v.norm() / piece)));
     const auto first = static_cast<std::uint32_t>(stage.vertices.size());
-    for (const Vector3f& corner : corners) {
-      stage.vertices.push_back(corner);
-      stage.normals.push_back(normal);
-    }
-    stage.triangles.push_back({{first, first + 1, first + 2}, surface});
-    stage.triangles.push_back({{first, first + 2, first + 3}, surface});
+    for (std::uint32_t r = 0; r <= rows; ++r)
+      for (std::uint32_t c = 0; c <= columns; ++c) {
+        stage.vertices.emplace_back(corners[0] + static_cast<float>(c) / static_cast<float>(columns) * u +
+                                    static_cast<float>(r) / static_cast<float>(rows) * v);
+        stage.normals.push_back(normal);
+      }
+    for (std::uint32_t r = 0; r < rows; ++r)
+      for (std::uint32_t c = 0; c < columns; ++c) {
+        const std::uint32_t a = first + r * (columns + 1) + c, b = a + columns + 1;
+        stage.triangles.push_back({{a, a + 1, b + 1}, surface});
+        stage.triangles.push_back({{a, b + 1, b}, surface});
+      }
   }
 
   /// Level at height z.
@@ -126,8 +137,7 @@ double post_width(const FieldModel::Goal& goal) { return std::min(0.05, goal.hei
 void add_panels(Builder& builder, const FieldModel& field, int index) {
   const FieldModel::Goal& goal = field.goals[static_cast<std::size_t>(index)];
   const ColorClass color = goal.color == GoalColor::blue ? ColorClass::blue : ColorClass::yellow;
-  const std::uint32_t panel =
-      builder.surface({.albedo = paint_of(color), .label = label_of(color), .gloss = .03F, .goal = index});
+  const std::uint32_t panel = builder.surface({.albedo = paint_of(color), .label = label_of(color), .goal = index});
   const double front = mouth_x(field, goal), sign = goal.side == GoalSide::plus_x ? 1 : -1;
   const double back = sign * (front + goal.depth), x = sign * front, y = goal.width / 2;
   builder.sheet({x, y}, {back, y}, {0, goal.height}, panel);
@@ -136,7 +146,7 @@ void add_panels(Builder& builder, const FieldModel& field, int index) {
 }
 
 void add_frame(Builder& builder, const FieldModel& field, const FieldModel::Goal& goal) {
-  const std::uint32_t white = builder.surface({.albedo = paint_of(ColorClass::white), .label = 2, .gloss = .05F});
+  const std::uint32_t white = builder.surface({.albedo = paint_of(ColorClass::white), .label = 2});
   const double post = post_width(goal), half = goal.width / 2, x = mouth_x(field, goal);
   const Interval depth = outwards(goal, x, x + post);
   // The panel's paint, not the post's, is what the mouth shows at its side.
@@ -150,7 +160,7 @@ void add_frame(Builder& builder, const FieldModel& field, const FieldModel::Goal
 void add_walls(Builder& builder, const FieldModel& field) {
   const FieldModel::Walls& walls = *field.walls;
   const ColorClass color = color_class_from(walls.color).value_or(ColorClass::white);
-  const std::uint32_t paint = builder.surface({.albedo = paint_of(color), .label = label_of(color), .gloss = .04F});
+  const std::uint32_t paint = builder.surface({.albedo = paint_of(color), .label = label_of(color)});
   const Interval z{0, walls.height}, x{walls.x.low - kWallThickness, walls.x.high + kWallThickness};
   builder.box(x, {walls.y.high, walls.y.high + kWallThickness}, z, paint);
   builder.box(x, {walls.y.low - kWallThickness, walls.y.low}, z, paint);

@@ -22,7 +22,6 @@ struct Surface {
   std::uint8_t label = 0;
   bool is_floor = false;    ///< Carpet and marks, by place.
   bool is_outside = false;  ///< The hall and all in it beyond the field: takes no part in shadows.
-  float gloss = 0;          ///< Of highlights. [1]
   int goal = -1;            ///< Panel of this goal of the field.
 };
 
