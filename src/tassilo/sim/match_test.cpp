@@ -91,6 +91,25 @@ TEST(Match, WithoutAWordOfItsMatesATeamStillPlays) {
   EXPECT_GT(match.world().score().cyan, 0);
 }
 
+TEST(Match, PoorEyesAreEnoughToPlay) {
+  for (const double frame_rate : {15., 30.}) {
+    SCOPED_TRACE(frame_rate);
+    MatchOptions options = with_seed(1, Players::absent);
+    options.frame_rate = frame_rate;
+    options.latency = 0.9 / frame_rate;
+    options.team_latency = 0.4;
+    options.eyes.distance_sigma = 0.1;
+    options.eyes.miss = 0.4;
+    options.eyes.pose_sigma = 0.1;
+    options.eyes.pose_sigma_deg = 5;
+    options.eyes.lost_every_s = 8;
+    Match match(shipped("msl98"), options);
+    match.play(90);
+    EXPECT_GT(match.world().score().cyan, 1);
+    EXPECT_EQ(match.world().score().magenta, 0);
+  }
+}
+
 TEST(Match, EitherSideIsPlayed) {
   MatchOptions options = with_seed(1, Players::absent);
   options.world.cyan_own_goal = GoalSide::plus_x;

@@ -196,7 +196,7 @@ void World::add(int id, Team team) {
   std::seed_seq seeds{static_cast<std::uint32_t>(options_.seed), static_cast<std::uint32_t>(options_.seed >> 32),
                       static_cast<std::uint32_t>(id)};
   drive.random.seed(seeds);
-  std::normal_distribution<double> wheel(0, 1);
+  std::normal_distribution<double> wheel;
   drive.left_scale = 1 + options_.wheel_sigma * wheel(drive.random);
   drive.right_scale = 1 + options_.wheel_sigma * wheel(drive.random);
   drives_.insert(drives_.begin() + (place - state_.robots.begin()), drive);
@@ -401,7 +401,7 @@ void World::drive(std::size_t i) {
   drive.left = towards(drive.left, drive.command.left);
   drive.right = towards(drive.right, drive.command.right);
   if (options_.slip_sigma > 0) {
-    std::normal_distribution<double> normal(0, 1);
+    std::normal_distribution<double> normal;
     const double forget = kTick / options_.slip_correlation_s, grow = options_.slip_sigma * std::sqrt(2 * forget);
     drive.left_slip += grow * normal(drive.random) - forget * drive.left_slip;
     drive.right_slip += grow * normal(drive.random) - forget * drive.right_slip;
@@ -462,8 +462,8 @@ void World::kick(std::size_t i) {
   const FieldPoint to = state_.ball.at - robot.at;
   if (norm(to) > robot.radius + state_.ball.radius + options_.kick_reach) return;
   if (std::abs(wrap_angle(bearing(to) - robot.theta)) > radians(options_.guide_deg)) return;
-  std::normal_distribution<double> normal(0, radians(options_.kick_sigma_deg));
-  const double direction = robot.theta + (options_.kick_sigma_deg > 0 ? normal(drive.random) : 0);
+  std::normal_distribution<double> normal;
+  const double direction = robot.theta + radians(options_.kick_sigma_deg) * normal(drive.random);
   state_.ball.vx = drive.vx + options_.kick_speed * std::cos(direction);
   state_.ball.vy = drive.vy + options_.kick_speed * std::sin(direction);
   drive.kicked_at = state_.t;
