@@ -97,6 +97,17 @@ class Render(ProgramTest):
             self.assertAlmostEqual(2 * (a[0] + .5), b[0] + .5, delta=.02)
             self.assertAlmostEqual(2 * (a[1] + .5), b[1] + .5, delta=.02)
 
+    def test_a_robot_file_gives_camera_field_and_team_but_no_start(self):
+        self.write("robot.yaml", f"robot: {{id: 4, team: magenta}}\ncamera: {CAMERA}\nfield: msl98\nstart_pose: {{x: 1, y: 0, theta: 0}}\n")
+        result = self.succeeds("sim", "render", "--output", "by_robot", "--robot", "robot.yaml", "--seconds", .05, "--rays", 1, "--quiet")
+        self.assertEqual(result.out, "")
+        text = (self.folder / "by_robot/robot.yaml").read_text()
+        self.assertIn("{id: 4, team: magenta}", text)
+        self.assertIn("camera: camera.yaml", text)
+        self.assertNotIn("start_pose", text)
+        self.succeeds("sim", "render", "--output", "with_start", "--robot", "robot.yaml", "--seconds", .05, "--rays", 1, "--start-pose", "--quiet")
+        self.assertIn("start_pose", (self.folder / "with_start/robot.yaml").read_text())
+
     def seen(self, name, *arguments):
         """Renders, trains on stills of another seed as one would, sees, and measures; all figures."""
         self.render(f"{name}_train", *arguments, "--seed", 11, "--stills", 16)

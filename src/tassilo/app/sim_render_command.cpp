@@ -234,6 +234,9 @@ int sim_render_command(const RenderArguments& arguments) {
       RobotFile written = shoot.robot;
       written.camera = fs::absolute(folder) / "camera.yaml";
       written.colors = fs::absolute(folder) / "colors.yaml";
+      // Those of the robot file are of another drive.
+      written.start_pose.reset();
+      written.start_state.reset();
       if (arguments.start_pose || shoot.field.goals.empty()) written.start_pose = start_pose(robot, arguments.seed);
       write_atomically(folder / "robot.yaml", robot_yaml(written, fs::absolute(folder)));
       write_camera(folder / "camera.yaml", shoot.camera);

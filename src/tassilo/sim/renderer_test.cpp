@@ -420,6 +420,9 @@ TEST(Renderer, EveryShippedFieldShowsWhatItHas) {
     if (field.line_width > 0) {
       EXPECT_GT(count(with, ColorClass::white), 20) << name;
     }
+    const double bright = mean_y(Renderer(field, camera, options).render(state, kMe));
+    EXPECT_GT(bright, 60) << name << ": lamps light it, whatever its size";
+    EXPECT_LT(bright, 160) << name;
     ASSERT_EQ(with.goals.size(), field.goals.size());
     for (std::size_t k = 0; k < field.goals.size(); ++k) {
       if (field.goals[k].side == GoalSide::plus_x) {

@@ -75,15 +75,21 @@ RayWorld::RayWorld(const Stage& stage, bool watertight) : device_(rtcNewDevice("
   if (!device_) throw Error("embree", "cannot be started on this machine");
   const RTCSceneFlags flags = watertight ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE;
   stage_ = new_scene(flags);
+  casters_ = new_scene(flags);
   sphere_ = new_scene(flags);
   cylinder_ = new_scene(flags);
   moving_ = new_scene(RTC_SCENE_FLAG_DYNAMIC);
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  for (const Stage::Triangle& triangle : stage.triangles) triangles.push_back(triangle.corners);
+  std::vector<std::array<std::uint32_t, 3>> triangles, casters;
+  for (const Stage::Triangle& triangle : stage.triangles) {
+    triangles.push_back(triangle.corners);
+    const Surface& surface = stage.surfaces[triangle.surface];
+    if (!surface.is_outside && !surface.is_floor) casters.push_back(triangle.corners);
+  }
   attach_triangles(device_.get(), stage_.get(), stage.vertices, triangles);
+  if (!casters.empty()) attach_triangles(device_.get(), casters_.get(), stage.vertices, casters);
   attach_sphere(device_.get(), sphere_.get());
   attach_cylinder(device_.get(), cylinder_.get());
-  for (const RtcScene* scene : {&stage_, &sphere_, &cylinder_, &moving_}) rtcCommitScene(scene->get());
+  for (const RtcScene* scene : {&stage_, &casters_, &sphere_, &cylinder_, &moving_}) rtcCommitScene(scene->get());
   if (rtcGetDeviceError(device_.get()) != RTC_ERROR_NONE) throw Error("embree", "refused the scene");
 }
 
@@ -121,7 +127,7 @@ void RayWorld::intersect(const LaneMask& valid, RTCRayHit8& rays) const {
 void RayWorld::occluded(const LaneMask& valid, RTCRay8& rays, bool by_stage, bool by_parts) const {
   RTCIntersectContext context = coherent_context();
   if (by_parts) rtcOccluded8(valid.lane, moving_.get(), &context, &rays);
-  if (by_stage) rtcOccluded8(valid.lane, stage_.get(), &context, &rays);
+  if (by_stage) rtcOccluded8(valid.lane, casters_.get(), &context, &rays);
 }
 
 void RayWorld::intersect_part(const LaneMask& valid, const MovingPart& part, RTCRayHit8& rays) const {

@@ -49,7 +49,8 @@ class RayWorld {
 
   /// The nearest hits. instID of moving parts is their index; others have RTC_INVALID_GEOMETRY_ID there.
   void intersect(const LaneMask& valid, RTCRayHit8& rays) const;
-  /// tfar becomes negative where something is in the way.
+  /// tfar becomes negative where something is in the way; the hall and what stands in it never is: lamps may hang
+  /// beyond its ceiling.
   void occluded(const LaneMask& valid, RTCRay8& rays, bool by_stage, bool by_parts) const;
   /// A part alone.
   void intersect_part(const LaneMask& valid, const MovingPart& part, RTCRayHit8& rays) const;
@@ -58,7 +59,7 @@ class RayWorld {
   RtcScene new_scene(RTCSceneFlags flags) const;
 
   RtcDevice device_;
-  RtcScene stage_, moving_, sphere_, cylinder_;
+  RtcScene stage_, casters_, moving_, sphere_, cylinder_;  ///< casters_: what of the stage casts shadows.
   std::vector<RtcGeometry> instances_;
   std::vector<MovingPart::Shape> shapes_;
 };
