@@ -5,11 +5,10 @@ usage: tests/browser_test.py PROGRAM PAGES SCREENSHOTS [unittest arguments]
 """
 import re
 import shutil
-import subprocess
 import sys
 import unittest
 
-from program import DATA, ROOT, SHARED, ProgramTest, main, without_timing
+from program import DATA, ROOT, SHARED, ProgramTest, do_steps, main, without_timing
 
 RECORDING = DATA / "d01_approach"
 TIMEOUT_S = 240  # of all steps
@@ -30,13 +29,7 @@ class Browser(ProgramTest):
         """Does webui/e2e/STEPS in a browser with the program; what the steps say."""
         command = ["node", ROOT / "webui/e2e" / steps, *options, "--screenshots", self.screenshots, "--", self.program, "serve", "--robot", "robot.yaml",
                    "--port", "0", "--pages", self.pages, *arguments]
-        done = subprocess.run([str(part) for part in command], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=TIMEOUT_S,
-                              text=True)
-        if done.returncode == 77:
-            self.skipTest(done.stdout.strip())
-        self.assertEqual(done.returncode, 0, done.stdout)
-        self.assertIn("all steps passed", done.stdout)
-        return done.stdout
+        return do_steps(self, command, TIMEOUT_S)
 
     def test_colors_are_trained_in_the_browser(self):
         recording = DATA / "d06_vga"

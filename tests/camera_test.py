@@ -5,7 +5,6 @@ usage: tests/camera_test.py PROGRAM FAKE_V4L2 [unittest arguments]
 """
 import os
 import re
-import select
 import signal
 import socket
 import subprocess
@@ -13,7 +12,7 @@ import sys
 import time
 import unittest
 
-from program import DATA, TIMEOUT_S, ProgramTest, decoded, ffmpeg, main, raw_bytes, skip, without_timing
+from program import DATA, Live, ProgramTest, close, ffmpeg, main, raw_bytes, skip, without_timing
 
 DEVICE = "/dev/video42"
 RECORDING = DATA / "d01_approach"
@@ -29,57 +28,16 @@ def preloaded(program, fake):
     return " ".join([*sanitizers, fake])
 
 
-def close(a, b):
-    """Equal, numbers nearly: times of a camera are whole microseconds."""
-    if isinstance(a, dict) and isinstance(b, dict):
-        return a.keys() == b.keys() and all(close(a[key], b[key]) for key in a)
-    if isinstance(a, list) and isinstance(b, list):
-        return len(a) == len(b) and all(map(close, a, b))
-    if isinstance(a, (int, float)) and isinstance(b, (int, float)) and not isinstance(a, bool):
-        return abs(a - b) <= 1e-3 * max(1, abs(a), abs(b))
-    return a == b
-
-
-class Live:
-    """A run with a camera, which goes on until it is told to end."""
+class CameraLive(Live):
+    """A run with a camera."""
 
     def __init__(self, test, script, *arguments):
-        self.test, self.told = test, ""
-        self.process = test.start(*arguments, env=test.camera(script), stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-        test.addCleanup(self.stop)
-
-    def read(self, wait_s):
-        if select.select([self.process.stdout], [], [], wait_s)[0]:
-            data = os.read(self.process.stdout.fileno(), 65536)
-            self.test.assertTrue(data, f"the program ended: {self.told}{decoded(self.process.stderr.read()) if self.process.poll() is not None else ''}")
-            self.told += decoded(data)
-
-    def until(self, holds, what):
-        end = time.monotonic() + TIMEOUT_S
-        while not holds():
-            self.test.assertLess(time.monotonic(), end, f"not seen: {what}; but: {self.told}")
-            self.read(.02)
-
-    def until_told(self, text):
-        self.until(lambda: text in self.told, text)
-
-    def until_scenes(self, name, count):
-        path = self.test.folder / name
-        self.until(lambda: path.exists() and path.read_bytes().count(b"\n") >= count, f"{count} scenes")
+        super().__init__(test, *arguments, env=test.camera(script))
 
     def end(self):
-        """Ctrl-C; returns all that was said."""
-        self.process.send_signal(signal.SIGINT)
-        out, err = self.process.communicate(timeout=TIMEOUT_S)
-        self.told += decoded(out)
-        self.test.assertEqual((self.process.returncode, decoded(err)), (0, ""), self.told)
+        super().end()
         self.test.assertIn("ended by a signal", self.told)
         return self.told
-
-    def stop(self):
-        if self.process.poll() is None:
-            self.process.kill()
-        self.process.communicate()
 
 
 class Camera(ProgramTest):
@@ -97,7 +55,7 @@ class Camera(ProgramTest):
         return os.environ | {"LD_PRELOAD": PRELOAD, "TASSILO_FAKE_CAMERA": script + " "}
 
     def run_until(self, script, *arguments, scenes, name):
-        live = Live(self, script, "run", "--source", DEVICE, "--output", name, *arguments)
+        live = CameraLive(self, script, "run", "--source", DEVICE, "--output", name, *arguments)
         live.until_scenes(name, scenes)
         return live.end()
 
@@ -137,7 +95,7 @@ class Camera(ProgramTest):
 
     def test_survives_all_trouble_and_counts(self):
         script = self.yuyv + " fps=40 lost=3:2 error=8 short=9 again=12 unplug=30:0.6 stall=60 fails=90"
-        live = Live(self, script, "run", *ROBOT, "--source", DEVICE, "--output", "trouble.jsonl")
+        live = CameraLive(self, script, "run", *ROBOT, "--source", DEVICE, "--output", "trouble.jsonl")
         live.until_told("is back after")
         self.assertIn(f"unplugged: {DEVICE} (Preloaded Camera) is unplugged, waiting for it\nstreaming: {DEVICE} (Preloaded Camera) is back after ", live.told)
         live.until_told("delivers frames again after")
@@ -165,7 +123,7 @@ class Camera(ProgramTest):
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as out:
             out.bind(("127.0.0.1", 0))
             port = out.getsockname()[1]
-        live = Live(self, self.yuyv + " fps=20", "run", *ROBOT, "--source", DEVICE, "--odometry", f"udp:127.0.0.1:{port}", "--output", "udp.jsonl")
+        live = CameraLive(self, self.yuyv + " fps=20", "run", *ROBOT, "--source", DEVICE, "--odometry", f"udp:127.0.0.1:{port}", "--output", "udp.jsonl")
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as out:
             def send_until_scenes():
                 out.sendto(f'{{"t": {time.time()}, "x": 0, "y": 0, "theta": 0}}\n'.encode(), ("127.0.0.1", port))
@@ -177,7 +135,7 @@ class Camera(ProgramTest):
         self.assertGreater(known, frames // 2, told)
 
     def test_ends_while_it_waits(self):
-        live = Live(self, self.yuyv + " fps=40 unplug=5:1000", "run", *ROBOT, "--source", f"v4l2:{DEVICE}")
+        live = CameraLive(self, self.yuyv + " fps=40 unplug=5:1000", "run", *ROBOT, "--source", f"v4l2:{DEVICE}")
         live.until_told("is unplugged")
         live.end()
 

@@ -1,12 +1,16 @@
 """What the tests of the whole program share: running it, small pictures and videos, and what holds for every answer."""
 import contextlib
 import json
+import os
 import pathlib
+import select
 import shutil
+import signal
 import struct
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 import zlib
 
@@ -138,6 +142,68 @@ def ffmpeg(*arguments, **options):
 def raw_bytes(video, pixel_format, frames):
     """Frames as they are in the video, limited range."""
     return ffmpeg("-i", video, "-frames:v", frames, "-vsync", "passthrough", "-f", "rawvideo", "-pix_fmt", pixel_format, "-")
+
+
+def close(a, b):
+    """Equal, numbers nearly: times of a camera are whole microseconds, seconds since the epoch have steps of a quarter of one."""
+    if isinstance(a, dict) and isinstance(b, dict):
+        return a.keys() == b.keys() and all(close(a[key], b[key]) for key in a)
+    if isinstance(a, list) and isinstance(b, list):
+        return len(a) == len(b) and all(map(close, a, b))
+    if isinstance(a, (int, float)) and isinstance(b, (int, float)) and not isinstance(a, bool):
+        return abs(a - b) <= 1e-3 * max(1, abs(a), abs(b))
+    return a == b
+
+
+class Live:
+    """The program running, until it is told to end."""
+
+    def __init__(self, test, *arguments, **options):
+        self.test, self.told = test, ""
+        self.process = test.start(*arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options)
+        test.addCleanup(self.stop)
+
+    def read(self, wait_s):
+        if select.select([self.process.stdout], [], [], wait_s)[0]:
+            data = os.read(self.process.stdout.fileno(), 65536)
+            self.test.assertTrue(data, f"the program ended: {self.told}{decoded(self.process.stderr.read()) if self.process.poll() is not None else ''}")
+            self.told += decoded(data)
+
+    def until(self, holds, what):
+        end = time.monotonic() + TIMEOUT_S
+        while not holds():
+            self.test.assertLess(time.monotonic(), end, f"not seen: {what}; but: {self.told}")
+            self.read(.02)
+
+    def until_told(self, text):
+        self.until(lambda: text in self.told, text)
+
+    def until_scenes(self, name, count):
+        path = self.test.folder / name
+        self.until(lambda: path.exists() and path.read_bytes().count(b"\n") >= count, f"{count} scenes")
+
+    def end(self):
+        """Ctrl-C; returns all that was said."""
+        self.process.send_signal(signal.SIGINT)
+        out, err = self.process.communicate(timeout=TIMEOUT_S)
+        self.told += decoded(out)
+        self.test.assertEqual((self.process.returncode, decoded(err)), (0, ""), self.told)
+        return self.told
+
+    def stop(self):
+        if self.process.poll() is None:
+            self.process.kill()
+        self.process.communicate()
+
+
+def do_steps(test, command, timeout_s):
+    """Runs steps of webui/e2e in a browser; what they say. Skipped where there is no browser."""
+    done = subprocess.run([str(part) for part in command], cwd=test.folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=timeout_s, text=True)
+    if done.returncode == 77:
+        test.skipTest(done.stdout.strip())
+    test.assertEqual(done.returncode, 0, done.stdout)
+    test.assertIn("all steps passed", done.stdout)
+    return done.stdout
 
 
 def skip(reason):

@@ -9,7 +9,6 @@ import json
 import os
 import pathlib
 import re
-import select
 import signal
 import subprocess
 import sys
@@ -17,7 +16,7 @@ import time
 import unittest
 
 from bus_peer import Program, free_domain
-from program import DATA, TIMEOUT_S, ProgramTest, decoded, ffmpeg, main, without_timing
+from program import DATA, TIMEOUT_S, Live, ProgramTest, close, decoded, ffmpeg, main, without_timing
 
 RECORDING = DATA / "d01_approach"
 VIDEO = RECORDING / "video.mkv"
@@ -26,17 +25,6 @@ ODOMETRY = RECORDING / "odometry.jsonl"
 ROBOT = ("--robot", RECORDING / "robot.yaml", "--colors", "div.yaml")
 IMAGES = "topic:/camera/image_raw"
 FRAMES = 40
-
-
-def close(a, b):
-    """Equal, numbers nearly: seconds since the epoch have steps of a quarter of a microsecond."""
-    if isinstance(a, dict) and isinstance(b, dict):
-        return a.keys() == b.keys() and all(close(a[key], b[key]) for key in a)
-    if isinstance(a, list) and isinstance(b, list):
-        return len(a) == len(b) and all(map(close, a, b))
-    if isinstance(a, (int, float)) and isinstance(b, (int, float)) and not isinstance(a, bool):
-        return abs(a - b) <= 1e-3 * max(1, abs(a), abs(b))
-    return a == b
 
 
 class Driver:
@@ -62,34 +50,11 @@ class Driver:
         return self.base
 
 
-class Live:
+class TopicLive(Live):
     """The program running on topics."""
 
     def __init__(self, test, domain, *arguments):
-        self.test, self.told = test, ""
-        self.process = test.start("run", "--domain", domain, *arguments, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-        test.addCleanup(self.stop)
-
-    def until_told(self, text):
-        end = time.monotonic() + TIMEOUT_S
-        while text not in self.told:
-            self.test.assertLess(time.monotonic(), end, f"not told: {text}; but: {self.told}")
-            self.test.assertIsNone(self.process.poll(), self.told)
-            if select.select([self.process.stdout], [], [], .05)[0]:
-                self.told += decoded(os.read(self.process.stdout.fileno(), 1 << 16))
-
-    def end(self):
-        """Ctrl-C; returns all that was said."""
-        self.process.send_signal(signal.SIGINT)
-        out, err = self.process.communicate(timeout=TIMEOUT_S)
-        self.told += decoded(out)
-        self.test.assertEqual((self.process.returncode, decoded(err)), (0, ""), self.told)
-        return self.told
-
-    def stop(self):
-        if self.process.poll() is None:
-            self.process.kill()
-        self.process.communicate()
+        super().__init__(test, "run", "--domain", domain, *arguments, stdin=subprocess.DEVNULL)
 
 
 class Topic(ProgramTest):
@@ -98,7 +63,7 @@ class Topic(ProgramTest):
         domain = free_domain()
         name = f"{domain}.jsonl"
         driver = Driver(self, domain, source, encoding, **options)
-        live = Live(self, domain, "--source", IMAGES, "--output", name, *arguments)
+        live = TopicLive(self, domain, "--source", IMAGES, "--output", name, *arguments)
         base = driver.wait()
         time.sleep(.3)
         told = live.end()
@@ -182,7 +147,7 @@ class Topic(ProgramTest):
                 topic = f"/reliable_{reliable}/image".lower()
                 ask(do="writer", topic=f"rt{topic}", type="image", reliable=reliable)
                 name = f"fast_{reliable}.jsonl"
-                live = Live(self, domain, *ROBOT, "--source", f"topic:{topic}", "--output", name)
+                live = TopicLive(self, domain, *ROBOT, "--source", f"topic:{topic}", "--output", name)
                 end = time.monotonic() + TIMEOUT_S
                 seen = 0
                 second = 100
@@ -232,7 +197,7 @@ class Topic(ProgramTest):
 
     def test_waits_for_a_driver_and_through_silence(self):
         domain = free_domain()
-        live = Live(self, domain, *ROBOT, "--source", IMAGES, "--output", "silence.jsonl")
+        live = TopicLive(self, domain, *ROBOT, "--source", IMAGES, "--output", "silence.jsonl")
         live.until_told("waiting for topic /camera/image_raw, which nobody publishes\n")
         driver = Driver(self, domain, VIDEO, "yuv422", pause="10:2.5")
         live.until_told("silent: topic /camera/image_raw has sent no image for 1.")
@@ -247,7 +212,7 @@ class Topic(ProgramTest):
         self.assertEqual(times, sorted(set(times)))
 
     def test_ends_while_it_waits(self):
-        live = Live(self, free_domain(), *ROBOT, "--source", IMAGES)
+        live = TopicLive(self, free_domain(), *ROBOT, "--source", IMAGES)
         live.until_told("waiting for topic")
         self.assertIn("ended by a signal before the first frame\n", live.end())
 

@@ -5,7 +5,7 @@
 // COMMAND starts a server that prints its address (http://...); it is ended afterwards. Exit code 77: skipped, no browser.
 // The source must go on for a minute, see a ball and free space, and be a field where `localization: boundary` has walls to go by.
 import assert from "node:assert/strict";
-import { open_page, run, until } from "./run.mjs";
+import { lose_connection, open_page, run, until } from "./run.mjs";
 
 /// The scenes a page receives, by their frame. A recording that begins anew has the same frames again; the last one counts.
 function scenes_of(page) {
@@ -232,28 +232,8 @@ async function main(url, browser, screenshots) {
     await picture("live_phone_light");
   });
 
-  await step("a lost connection is told, what is shown is marked as old, and it comes back by itself", async () => {
-    const other = await context.newPage();
-    let lost = false;
-    const sockets = [];
-    await other.routeWebSocket(/\/ws\//, (socket) => {
-      if (lost) return void socket.close();
-      sockets.push(socket);
-      socket.connectToServer();
-    });
-    await other.goto(new URL("/", url).href);
-    const condition = other.locator('[data-show="condition"]');
-    const says = (words) => until(`the page says ${words}`, async () => words.test(await condition.innerText()));
-    await says(/^\s*live/);
-    lost = true;
-    for (const socket of sockets) await socket.close();
-    await says(/connection lost, next try in/);
-    await other.locator('[data-show="content"].old').waitFor();
-    await picture("lost", false, other);
-    lost = false;
-    await says(/^\s*live/);
-    await other.close();
-  });
+  await step("a lost connection is told, what is shown is marked as old, and it comes back by itself", () =>
+    lose_connection({ context, picture, url, live: /^live/ }));
 
   await end();
 }

@@ -11,7 +11,7 @@
 // The server must have heard the robots for half a minute, or its log be as long, and at least one must have a pose and move.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
-import { open_page, run, until } from "./run.mjs";
+import { lose_connection, open_page, run, until } from "./run.mjs";
 
 const pause = (ms) => new Promise((done) => setTimeout(done, ms));
 
@@ -364,27 +364,8 @@ async function main(url, browser, screenshots, { robots: wanted, "least-rate": l
     await page.emulateMedia({ colorScheme: "light" });
   });
 
-  await step("a lost connection is told, what is shown is marked as old, and it comes back by itself", async () => {
-    const other = await context.newPage();
-    let lost = false;
-    const sockets = [];
-    await other.routeWebSocket(/\/ws\//, (socket) => {
-      if (lost) return void socket.close();
-      sockets.push(socket);
-      socket.connectToServer();
-    });
-    await other.goto(new URL("/", url).href);
-    const says = (words) => until(`the page says ${words}`, async () => words.test((await other.locator('[data-show="condition"]').innerText()).trim()));
-    await says(/^live$/);
-    lost = true;
-    for (const socket of sockets) await socket.close();
-    await says(/connection lost, next try in/);
-    await other.locator('[data-show="content"].old').waitFor();
-    await picture("lost", false, other);
-    lost = false;
-    await says(/^live$/);
-    await other.close();
-  });
+  await step("a lost connection is told, what is shown is marked as old, and it comes back by itself", () =>
+    lose_connection({ context, picture, url, live: /^live$/ }));
 
   await end();
 }

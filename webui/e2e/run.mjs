@@ -95,6 +95,30 @@ export async function run(name, main, own = {}) {
   }
 }
 
+/// Another page of `context` loses all its channels, says so and marks what it shows as old, and is live again by itself. `live`: what its condition says then.
+export async function lose_connection({ context, picture, url, live }) {
+  const other = await context.newPage();
+  let lost = false;
+  const sockets = [];
+  await other.routeWebSocket(/\/ws\//, (socket) => {
+    if (lost) return void socket.close();
+    sockets.push(socket);
+    socket.connectToServer();
+  });
+  await other.goto(new URL("/", url).href);
+  const condition = other.locator('[data-show="condition"]');
+  const says = (words) => until(`the page says ${words}`, async () => words.test((await condition.innerText()).trim()));
+  await says(live);
+  lost = true;
+  for (const socket of sockets) await socket.close();
+  await says(/connection lost, next try in/);
+  await other.locator('[data-show="content"].old').waitFor();
+  await picture("lost", false, other);
+  lost = false;
+  await says(live);
+  await other.close();
+}
+
 /// A page of its own to work on. `prefix` begins the names of its screenshots; `refusals` are the answers that the test provokes, and that the browser tells as errors.
 /// picture(name), step(name, work), show(name), api(method, path, data); end() closes it, and fails when the page had errors.
 export async function open_page(browser, url, { screenshots, prefix, refusals }) {

@@ -5,6 +5,7 @@ import { type Api, server_api, type ServerState } from "./link/api";
 import { type Condition, condition_of } from "./link/condition";
 import { frame_of_jpeg } from "./link/jpeg";
 import { Live } from "./link/live";
+import { again_and_again, on_every_frame } from "./link/loops";
 import { NewestDecoder } from "./link/newest";
 import { Observable } from "./link/observable";
 import { RecordingModel } from "./live/recording_model";
@@ -56,17 +57,11 @@ export class Session {
     this.scene_channel.start();
     this.picture_channel.start();
     void this.stages.refresh();
-    const on_screen = (now: number): void => {
+    on_every_frame((now) => {
       this.live.tick(now);
       this.show_picture();
-      requestAnimationFrame(on_screen);
-    };
-    requestAnimationFrame(on_screen);
-    const ask = async (): Promise<void> => {
-      await this.ask_state();
-      setTimeout(ask, 1000);
-    };
-    void ask();
+    });
+    again_and_again(() => this.ask_state(), 1000);
     setInterval(() => this.judge(), 250);
     addEventListener("online", () => this.retry());
     // Nobody looks: the radio link has better things to carry, and the server need not draw.

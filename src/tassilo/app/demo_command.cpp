@@ -17,6 +17,7 @@
 #include "tassilo/app/sim_match.h"
 #include "tassilo/app/web_arguments.h"
 #include "tassilo/base/error.h"
+#include "tassilo/base/median.h"
 #include "tassilo/files/field_file.h"
 
 namespace tassilo {
@@ -32,12 +33,6 @@ struct DemoArguments {
 };
 
 using Clock = std::chrono::steady_clock;
-
-/// The share of values that are not above it; sorts a copy. Values are not empty.
-double quantile(std::vector<double> values, double share) {
-  std::ranges::sort(values);
-  return values[std::min(values.size() - 1, static_cast<std::size_t>(share * static_cast<double>(values.size())))];
-}
 
 std::string error_line(const char* what, const std::vector<double>& errors) {
   if (errors.empty()) return fmt::format("{:<22}  never\n", what);
@@ -62,9 +57,9 @@ void print_report(const SimMatch& match) {
 }
 
 GoalSide side_of(const FieldModel& field, const std::string& color) {
-  for (const FieldModel::Goal& goal : field.goals)
-    if (to_string(goal.color) == color) return goal.side;
-  throw Error("--own-goal", "is " + color + ", but the field has no such goal");
+  const auto side = side_of_goal(field, color == to_string(GoalColor::blue) ? GoalColor::blue : GoalColor::yellow);
+  if (!side) throw Error("--own-goal", "is " + color + ", but the field has no such goal");
+  return *side;
 }
 
 /// Plays until it is time; in real time unless headless.
@@ -104,7 +99,8 @@ int demo(const DemoArguments& arguments) {
     std::fflush(stdout);
   }
   SimMatch match(options);
-  if (!arguments.quiet) fmt::print("{:.2f} % of their pixels are classified right\n", 100 * match.colors_quality());
+  if (!arguments.quiet)
+    fmt::print("{:.2f} % of their pixels are classified right by the others\n", 100 * match.colors_quality());
   if (arguments.is_headless) {
     play(match, arguments);
   } else {

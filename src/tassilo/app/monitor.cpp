@@ -58,6 +58,13 @@ std::optional<double> trail_seconds(const WebRequest& request) {
   return seconds && *seconds >= 0 && *seconds <= 60 ? seconds : std::nullopt;
 }
 
+/// Those that whoever asks does not know yet.
+std::vector<TeamNews> news_after(const WebRequest& request, std::vector<TeamNews> news) {
+  const auto after = static_cast<std::int64_t>(std::clamp(number(request, "after").value_or(0), 0., 1e15));
+  std::erase_if(news, [&](const TeamNews& one) { return one.number <= after; });
+  return news;
+}
+
 std::string monitor_json(const char* mode, const std::string& name, const std::string& damage, const FieldModel& field,
                          std::optional<double> begin, std::optional<double> end, double step) {
   const json value{{"version", TASSILO_VERSION},
@@ -113,8 +120,7 @@ void LiveMonitor::find_ears(double now) {
   deaf_.clear();
   with_pictures_.clear();
   for (const BusEndpoint& publication : bus_.publications()) {
-    if (!publication.topic.starts_with("rt/")) continue;
-    const std::string ros_name = publication.topic.substr(2);
+    const std::string ros_name = ros_topic_name(publication.topic);
     const RobotTopic topic = robot_topic_from(ros_name);
     if (topic.robot < 0 || topic.topic->name == kScanTopic.name) continue;
     if (publication.type != topic.topic->wire_type()) {
@@ -126,8 +132,7 @@ void LiveMonitor::find_ears(double now) {
     // Strangers are told of, and not heard: that they are there is known by their state.
     if (!is_known(topic.robot) && topic.topic->name != kTeamStateTopic.name) continue;
     const bool is_picture = topic.topic->name == kImageTopic.name;
-    if (is_picture && (with_pictures_.empty() || with_pictures_.back() != topic.robot))
-      with_pictures_.push_back(topic.robot);
+    if (is_picture) with_pictures_.push_back(topic.robot);
     if (is_picture && server_.listeners(picture_channels_.at(static_cast<std::size_t>(topic.robot))) == 0) continue;
     const auto known = ears_.find(publication.topic);
     if (known != ears_.end()) {
@@ -301,10 +306,7 @@ WebResponse LiveMonitor::answer(const WebRequest& request) {
   if (request.path == "/api/monitor/picture")
     return refusal(404, "live pictures come on /ws/picture<robot>; those of before are not kept");
   if (request.path == "/api/monitor/news") {
-    const auto after = static_cast<std::int64_t>(std::clamp(number(request, "after").value_or(0), 0., 1e15));
-    std::vector<TeamNews> news(view_.news().begin(), view_.news().end());
-    std::erase_if(news, [&](const TeamNews& one) { return one.number <= after; });
-    return ok(team_news_json(news));
+    return ok(team_news_json(news_after(request, {view_.news().begin(), view_.news().end()})));
   }
   return nothing_at(request);
 }
@@ -346,10 +348,7 @@ WebResponse LogMonitor::answer(const WebRequest& request) {
     return {200, "image/jpeg", std::move(*picture)};
   }
   if (request.path == "/api/monitor/news") {
-    std::vector<TeamNews> news = log_.news();
-    const auto after = static_cast<std::int64_t>(std::clamp(number(request, "after").value_or(0), 0., 1e15));
-    std::erase_if(news, [&](const TeamNews& one) { return one.number <= after; });
-    return ok(team_news_json(news));
+    return ok(team_news_json(news_after(request, log_.news())));
   }
   return nothing_at(request);
 }

@@ -54,7 +54,7 @@ class Replay {
       const auto [writer, is_new] = names_.try_emplace(channel.topic, nullptr);
       if (is_new)
         writer->second = std::make_shared<BusWriter>(
-            bus_.writer({"rt" + channel.topic, topic.topic->wire_type(), BusReliability::best_effort, 1}));
+            bus_.writer({wire_topic_name(channel.topic), topic.topic->wire_type(), BusReliability::best_effort, 1}));
       writers_.emplace(number, Out{topic.topic, writer->second});
     }
     if (writers_.empty()) throw Error(arguments.log, "has no topics of a robot, /robot<id>/...");

@@ -5,14 +5,10 @@
 #include <algorithm>
 #include <string_view>
 
+#include "tassilo/base/median.h"
+
 namespace tassilo {
 namespace {
-
-double quantile(std::vector<double> values, double q) {
-  const auto at = static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1) + 0.5);
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<std::size_t>(at)];
-}
 
 /// Of a run without end the last two hours.
 void keep(std::vector<double>& values, double value, std::int64_t count) {

@@ -2,14 +2,17 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <type_traits>
 
-#include "tassilo/base/error.h"
+#include "tassilo/base/option_check.h"
+#include "tassilo/color/quality.h"
 #include "tassilo/color/train.h"
 #include "tassilo/geometry/angle.h"
 #include "tassilo/message/from_scene.h"
 #include "tassilo/message/to_scene.h"
+#include "tassilo/region/morphology.h"
+#include "tassilo/region/raster.h"
 
 namespace tassilo {
 namespace {
@@ -53,25 +56,25 @@ TeamFusionOptions fusion_of(Team team) {
   return options;
 }
 
-/// Sees what the camera shows of a state and says which pixels surely are of which class: those whose neighbors are,
-/// too, over the width of two chroma samples.
+/// Pixels that surely are of a class: those whose neighbors are, too, over the width of two chroma samples.
 void take_samples(const Frame& frame, const SimView& view, int group, std::vector<ColorSample>& samples) {
-  std::array<std::vector<YuvPixel>, 9> pixels;
-  constexpr int reach = 2;
-  for (int r = reach; r < view.height - reach; ++r)
-    for (int c = reach; c < view.width - reach; ++c) {
-      const auto label_at = [&](int column, int row) {
-        return view.labels[static_cast<std::size_t>(row * view.width + column)];
-      };
-      const std::uint8_t label = label_at(c, r);
-      if (label >= pixels.size()) continue;
-      bool is_pure = true;
-      for (int dr = -reach; dr <= reach && is_pure; ++dr)
-        for (int dc = -reach; dc <= reach && is_pure; ++dc) is_pure = label_at(c + dc, r + dr) == label;
-      if (is_pure) pixels[label].push_back({frame.view.y(c, r), frame.view.u(c, r), frame.view.v(c, r)});
-    }
-  for (std::size_t label = 0; label < pixels.size(); ++label)
-    if (!pixels[label].empty()) samples.push_back({static_cast<ColorClass>(label), group, std::move(pixels[label])});
+  const ByteView labels{view.labels.data(), view.width, view.height, view.width};
+  for (int label = 0; label <= kColorClassCount; ++label) {
+    const Region region = region_where(labels, [&](int value) { return value == label; });
+    std::vector<YuvPixel> pixels = pixels_of(frame.view, erosion(region, rectangle(5, 5)));
+    if (!pixels.empty()) samples.push_back({static_cast<ColorClass>(label), group, std::move(pixels)});
+  }
+}
+
+/// Share of the samples' pixels that a table of the other stills classifies right.
+double quality_of(const std::vector<ColorSample>& samples, ColorRange range) {
+  const ColorQuality quality = cross_validate(samples, range);
+  std::int64_t right = 0, all = 0;
+  for (std::size_t label = 0; label < quality.confusion.size(); ++label) {
+    right += quality.confusion[label][label];
+    for (const std::int64_t pixels : quality.confusion[label]) all += pixels;
+  }
+  return all > 0 ? static_cast<double>(right) / static_cast<double>(all) : 0;
 }
 
 Frame black(const Frame& like) {
@@ -91,34 +94,18 @@ Frame black(const Frame& like) {
   return frame;
 }
 
-const SimRobot* robot_of(const SimState& state, int id) {
-  const auto found = std::ranges::find(state.robots, id, &SimRobot::id);
-  return found == state.robots.end() ? nullptr : &*found;
-}
-
 std::optional<ToldBall> told(const std::optional<TeamBall>& ball) {
   if (!ball) return std::nullopt;
   return ToldBall{ball->position, ball->vx, ball->vy, ball->age};
 }
 
-std::optional<Role> role_named(std::string_view name) {
-  for (const Role role : {Role::goalkeeper, Role::defender, Role::striker})
-    if (to_string(role) == name) return role;
-  return std::nullopt;
-}
-
 }  // namespace
 
 void SimMatchOptions::check() const {
-  const auto within = [](const char* name, double value, double low, double high) {
-    if (!(value >= low && value <= high))
-      throw Error(std::string("match.") + name,
-                  "is " + std::to_string(value) + ", must be " + std::to_string(low) + " .. " + std::to_string(high));
-  };
-  within("robots", robots, 1, 8);
-  within("frame_rate", frame_rate, 5, 60);
-  within("loss", loss, 0, 0.95);
-  within("delay", delay_s, 0, 1);
+  check_between("match.robots", robots, 1, 8);
+  check_between("match.frame_rate", frame_rate, 5, 60);
+  check_between("match.loss", loss, 0, 0.95);
+  check_between("match.delay", delay_s, 0, 1);
 }
 
 SimMatch::SimMatch(const SimMatchOptions& options)
@@ -173,13 +160,7 @@ void SimMatch::train_colors() {
     take_samples(frame, renderer_.look(state, eye.id), still, samples);
   }
   colors_ = tassilo::train_colors(samples, renderer_.options().range);
-  std::int64_t right = 0, all = 0;
-  for (const ColorSample& sample : samples)
-    for (const YuvPixel& pixel : sample.pixels) {
-      ++all;
-      right += classify(colors_, pixel.y, pixel.u, pixel.v) == sample.color ? 1 : 0;
-    }
-  colors_quality_ = all > 0 ? static_cast<double>(right) / static_cast<double>(all) : 0;
+  colors_quality_ = quality_of(samples, renderer_.options().range);
 }
 
 void SimMatch::seat_cyan(int id, bool is_goalkeeper) {
@@ -194,14 +175,13 @@ void SimMatch::seat_cyan(int id, bool is_goalkeeper) {
   setup.robot.id = id;
   setup.robot.team = Team::cyan;
   // Where it was put is known, as well as a hand puts it.
-  const SimRobot* const robot = robot_of(world_.state(), id);
+  const SimRobot* const robot = find_robot(world_.state(), id);
   setup.vision.start_pose = gaussian_of({robot->at.x, robot->at.y, robot->theta, 0.1, 0.1});
   Vision vision(setup.vision, setup.registry);
   seat.configuration = std::make_shared<const Configuration>(Configuration{0, 0, std::move(setup), std::move(vision)});
   seat.fusion = TeamFusion(fusion_of(Team::cyan));
+  seat.player = player_options(options_.field);
   seat.player.is_goalkeeper = is_goalkeeper;
-  seat.player.radius = options_.field.robots.width.middle() / 2;
-  seat.player.wheel_base = world_.wheel_base(id);
   if (options_.bus) {
     TeamSenderOptions told;
     told.robot = id;
@@ -217,9 +197,8 @@ void SimMatch::seat_magenta(int id, bool is_goalkeeper) {
   EyesOptions eyes;
   eyes.seed = options_.seed;
   opponent.eyes = std::make_unique<IdealEyes>(eyes, id);
+  opponent.player = player_options(options_.field);
   opponent.player.is_goalkeeper = is_goalkeeper;
-  opponent.player.radius = options_.field.robots.width.middle() / 2;
-  opponent.player.wheel_base = world_.wheel_base(id);
   opponents_.emplace(id, std::move(opponent));
 }
 
@@ -270,62 +249,56 @@ void SimMatch::see_and_play(Seat& seat) {
 
 /// As messages, each to each, some lost and some late.
 void SimMatch::tell(Seat& seat, const Scene& scene, const PlayerOutput& output) {
-  const MessageContext context{.robot = seat.id, .team = Team::cyan};
-  const ros::Time stamp = ros_time(scene.t);
-  Packet packet;
-  packet.from = seat.id;
-  if (scene.pose) packet.pose = encoded(pose_message(*scene.pose, stamp));
-  packet.balls = encoded(balls_message(scene, stamp, context));
-  packet.robots = encoded(robots_message(scene, stamp, context));
-  msgs::TeamState state = team_state_message(scene, stamp, context);
-  state.role = to_string(output.role);
-  state.action = output.action;
-  state.planning_state = output.planning_state;
-  packet.state = encoded(state);
+  const auto word = std::make_shared<const Word>(word_of(seat.id, scene, output));
   std::uniform_real_distribution<double> chance(0, 1);
   const auto send = [&](int to) {
     if (chance(random_) < options_.loss) return;
-    packet.to = to;
-    packet.due = scene.t + 2 * options_.delay_s * chance(random_);
-    air_.push_back(packet);
+    air_.push_back({scene.t + 2 * options_.delay_s * chance(random_), to, word});
   };
   for (const auto& [id, other] : seats_)
     if (id != seat.id) send(id);
   send(kBench);
 }
 
+/// What is left of it when it has been told: everybody reads the same bytes.
+SimMatch::Word SimMatch::word_of(int robot, const Scene& scene, const PlayerOutput& output) {
+  const MessageContext context{.robot = robot, .team = Team::cyan};
+  const ros::Time stamp = ros_time(scene.t);
+  const auto over_the_air = [](const auto& message) {
+    return *decoded<std::remove_cvref_t<decltype(message)>>(encoded(message));
+  };
+  const msgs::TeamState state = over_the_air(team_state_message(scene, stamp, context));
+  Word word;
+  word.role = output.role;
+  word.observation.robot = robot;
+  word.observation.t = seconds_of(state.header.stamp);
+  word.observation.stamp = static_cast<std::int64_t>(word.observation.t * 1e9);
+  if (scene.pose) {
+    word.observation.pose = pose_from(over_the_air(pose_message(*scene.pose, stamp)));
+    add_state(*word.observation.pose, state);
+  }
+  word.observation.balls = balls_from(over_the_air(balls_message(scene, stamp, context)));
+  word.observation.robots = robots_from(over_the_air(robots_message(scene, stamp, context)));
+  return word;
+}
+
 void SimMatch::hear(double now) {
   for (const Packet& packet : air_) {
     if (packet.due > now) continue;
-    const auto state = decoded<msgs::TeamState>(packet.state);
-    const auto balls = decoded<msgs::BallArray>(packet.balls);
-    const auto robots = decoded<msgs::RobotArray>(packet.robots);
-    if (!state || !balls || !robots) continue;
-    TeamObservation observation;
-    observation.robot = packet.from;
-    observation.t = seconds_of(state->header.stamp);
-    observation.stamp = static_cast<std::int64_t>(observation.t * 1e9);
-    if (const auto pose = decoded<ros::PoseWithCovarianceStamped>(packet.pose); pose && !packet.pose.empty()) {
-      observation.pose = pose_from(*pose);
-      observation.pose->kind = pose_kind_from(state->pose_kind).value_or(PoseKind::start);
-      observation.pose->age = state->pose_age;
-      observation.pose->mirror = state->pose_is_mirrored;
-    }
-    observation.balls = balls_from(*balls);
-    observation.robots = robots_from(*robots);
+    const TeamObservation& observation = packet.word->observation;
     if (packet.to == kBench) {
       bench_.add(observation, now);
       continue;
     }
     Seat& seat = seats_.at(packet.to);
     seat.fusion.add(observation, now);
-    double& heard_at = seat.heard_at[packet.from];
+    double& heard_at = seat.heard_at[observation.robot];
     if (observation.t < heard_at) continue;
     heard_at = observation.t;
-    Teammate& mate = seat.mates[packet.from];
-    mate.id = packet.from;
-    mate.is_goalkeeper = seats_.at(packet.from).player.is_goalkeeper;  // agreed before the match
-    mate.role = role_named(state->role);
+    Teammate& mate = seat.mates[observation.robot];
+    mate.id = observation.robot;
+    mate.is_goalkeeper = seats_.at(observation.robot).player.is_goalkeeper;  // agreed before the match
+    mate.role = packet.word->role;
     mate.pose.reset();
     if (observation.pose)
       mate.pose = make_pose2<FieldFrame, RobotFrame>(observation.pose->x, observation.pose->y, observation.pose->theta);
@@ -338,7 +311,7 @@ void SimMatch::play(int id, Opponent& opponent) {
   PlayerInput input;
   input.id = id;
   input.team = Team::magenta;
-  input.own_goal = options_.cyan_own_goal == GoalSide::minus_x ? GoalSide::plus_x : GoalSide::minus_x;
+  input.own_goal = world_.own_goal(Team::magenta);
   input.t = world_.state().t;
   input.scene = &scene;
   input.field = &options_.field;
@@ -377,8 +350,7 @@ void SimMatch::step() {
 
 void SimMatch::note(Seat& seat, const Scene& scene) {
   const SimState& truth = world_.state();
-  const SimRobot* const robot = robot_of(truth, seat.id);
-  const auto field_from_robot = make_pose2<FieldFrame, RobotFrame>(robot->at.x, robot->at.y, robot->theta);
+  const SimRobot* const robot = find_robot(truth, seat.id);
   constexpr double lost = 0.5;  // further off, it is somewhere else [m]
   bool is_lost = true;
   if (scene.pose) {
@@ -391,7 +363,7 @@ void SimMatch::note(Seat& seat, const Scene& scene) {
   else if (!seat.lost_since)
     seat.lost_since = scene.t;
   if (seat.lost_since) report_.longest_lost = std::max(report_.longest_lost, scene.t - *seat.lost_since);
-  const FloorPoint ball = inverse(field_from_robot) * truth.ball.at;
+  const FloorPoint ball = inverse(pose_of(*robot)) * truth.ball.at;
   for (const Ball& seen : scene.balls) {
     if (!seen.floor) continue;
     const double error = distance(seen.floor->position.mean, ball);

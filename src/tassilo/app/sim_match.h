@@ -1,6 +1,5 @@
 #pragma once
 
-#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
@@ -66,16 +65,22 @@ class SimMatch {
   const World& world() const { return world_; }
   const std::vector<RefereeEvent>& calls() const { return calls_; }
   const SimMatchReport& report() const { return report_; }
-  double colors_quality() const { return colors_quality_; }  ///< Share of the stills' pixels that are classified right.
+  /// Share of the stills' pixels that a table of the other stills classifies right.
+  double colors_quality() const { return colors_quality_; }
   /// What went wrong with telling the world outside, in lines without ends.
   std::vector<std::string> news();
 
  private:
-  /// What a robot tells its team, as it goes over the air.
+  /// What a robot told its team with one image.
+  struct Word {
+    TeamObservation observation;
+    Role role = Role::defender;
+  };
+  /// It on its way to one of them.
   struct Packet {
     double due = 0;  ///< [s]
-    int from = 0, to = 0;
-    std::vector<std::byte> pose, balls, robots, state;
+    int to = 0;
+    std::shared_ptr<const Word> word;
   };
   struct Seat {
     int id = 0;
@@ -103,6 +108,7 @@ class SimMatch {
   void seat_magenta(int id, bool is_goalkeeper);
   void see_and_play(Seat& seat);
   void tell(Seat& seat, const Scene& scene, const PlayerOutput& output);
+  static Word word_of(int robot, const Scene& scene, const PlayerOutput& output);
   void hear(double now);
   void play(int id, Opponent& opponent);
   void go_on(double seconds);

@@ -221,7 +221,7 @@ int sim_render_command(const RenderArguments& arguments) {
       renderer.set_light(of_frame.lamps, shoot.rendering.exposure);
     }
     const SimState state = motion(time_of(done));
-    const SimRobot& robot = *std::ranges::find(state.robots, me, &SimRobot::id);
+    const SimRobot& robot = *find_robot(state, me);
     of_frame.frame = done;
     if (done > 0 && !arguments.stills) {
       of_frame.motion = motion_between(before, robot);

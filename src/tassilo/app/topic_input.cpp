@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "tassilo/app/unix_clock.h"
 #include "tassilo/base/error.h"
 #include "tassilo/message/codec.h"
 #include "tassilo/message/odometry_sample.h"
@@ -23,9 +24,6 @@ constexpr std::size_t kMostSamples = 4096;                   // of odometry that
 constexpr std::int64_t kMostPixels = std::int64_t{1} << 25;  // of a compressed image
 
 double steady_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-double realtime_s() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
 
 BusTopic bus_topic(const std::string& name, std::string type, int depth) {
   BusTopic topic;
@@ -63,7 +61,7 @@ class TopicInput::Reader final : public FrameReader {
   /// Stamps of a simulated clock say nothing of latency.
   std::optional<double> now() const override {
     if (std::abs(input_.images_->delay_s()) > kStrangeClock) return std::nullopt;
-    return realtime_s();
+    return unix_now();
   }
 
  private:

@@ -21,6 +21,17 @@ TEST(Median, IsTheMiddleOfTheSortedValues) {
   }
 }
 
+TEST(Quantile, IsTheNearestOfTheOrderedValues) {
+  const std::vector<int> values{50, 10, 40, 20, 30};
+  EXPECT_EQ(quantile(values, 0), 10);
+  EXPECT_EQ(quantile(values, 0.12), 10);
+  EXPECT_EQ(quantile(values, 0.13), 20);
+  EXPECT_EQ(quantile(values, 0.5), median(values));
+  EXPECT_EQ(quantile(values, 1), 50);
+  EXPECT_EQ(quantile(std::vector<double>{7}, 0.9), 7);
+  EXPECT_EQ(quantile(std::vector<int>{1, 2, 3, 4}, 0.5), median(std::vector<int>{1, 2, 3, 4}));
+}
+
 TEST(MedianDeathTest, NothingHasNoMiddle) { EXPECT_DEATH(median(std::vector<int>{}), "median of one value or more"); }
 
 }  // namespace

@@ -53,6 +53,12 @@ PoseSeen pose_from(const ros::PoseWithCovarianceStamped& message) {
   return pose;
 }
 
+void add_state(PoseSeen& pose, const msgs::TeamState& state) {
+  pose.kind = pose_kind_from(state.pose_kind).value_or(pose.kind);
+  pose.age = state.pose_age;
+  pose.mirror = state.pose_is_mirrored;
+}
+
 RecycledVector<Ball> balls_from(const msgs::BallArray& message) {
   RecycledVector<Ball> balls;
   for (const msgs::Ball& told : message.balls) {

@@ -11,6 +11,8 @@ namespace tassilo {
 
 /// Kind, age and mirror are told by the team state.
 PoseSeen pose_from(const ros::PoseWithCovarianceStamped& message);
+/// Adds those; the kind stays where the state tells of none.
+void add_state(PoseSeen& pose, const msgs::TeamState& state);
 RecycledVector<Ball> balls_from(const msgs::BallArray& message);
 RecycledVector<Goal> goals_from(const msgs::GoalArray& message);
 RecycledVector<RobotSeen> robots_from(const msgs::RobotArray& message);

@@ -102,7 +102,15 @@ TEST(ToScene, KindsComeBack) {
     Scene scene;
     scene.pose.emplace();
     scene.pose->kind = kind;
-    EXPECT_EQ(pose_kind_from(team_state_message(scene, {}, {}).pose_kind), kind);
+    scene.pose->age = 1.5;
+    scene.pose->mirror = true;
+    const msgs::TeamState state = team_state_message(scene, {}, {});
+    EXPECT_EQ(pose_kind_from(state.pose_kind), kind);
+    PoseSeen heard;
+    add_state(heard, state);
+    EXPECT_EQ(heard.kind, kind);
+    EXPECT_EQ(heard.age, 1.5);
+    EXPECT_TRUE(heard.mirror);
   }
   EXPECT_FALSE(pose_kind_from(team_state_message(Scene{}, {}, {}).pose_kind));
   for (const Team team : {Team::unknown, Team::cyan, Team::magenta})

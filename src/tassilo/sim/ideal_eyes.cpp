@@ -65,12 +65,12 @@ Scene IdealEyes::see(const World& world) {
   const double t = scene.t;
   expects(is_first_ || t >= seen_at_, "IdealEyes: time goes forward");
   const auto& robots = world.state().robots;
-  const auto me = std::ranges::find(robots, robot_, &SimRobot::id);
-  if (me == robots.end()) return scene;
+  const SimRobot* const me = find_robot(world.state(), robot_);
+  if (me == nullptr) return scene;
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform;
   std::exponential_distribution<double> waiting;
-  const auto robot_from_field = inverse(make_pose2<FieldFrame, RobotFrame>(me->at.x, me->at.y, me->theta));
+  const auto robot_from_field = inverse(pose_of(*me));
 
   // Pose: an error that lasts, and times in which there is none.
   const double dt = is_first_ ? 1e9 : t - seen_at_, keeps = std::exp(-dt / options_.pose_correlation_s);

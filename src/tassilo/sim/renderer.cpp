@@ -12,6 +12,7 @@
 
 #include "tassilo/base/contract.h"
 #include "tassilo/base/error.h"
+#include "tassilo/base/option_check.h"
 #include "tassilo/geometry/pose2.h"
 #include "tassilo/sim/internal/floor_marks.h"
 #include "tassilo/sim/internal/lighting.h"
@@ -36,12 +37,6 @@ constexpr float kMarkReach = .1F;  ///< [m]
 
 // Objects of a view: 0 nothing that counts, 1 ball, then goals, then robots.
 constexpr int kBallObject = 1, kGoalObject = 2, kRobotObject = 16;
-
-void check_between(const char* option, double value, double low, double high) {
-  if (!(value >= low && value <= high))
-    throw Error(std::string("render.") + option,
-                "is " + std::to_string(value) + ", must be " + std::to_string(low) + " .. " + std::to_string(high));
-}
 
 std::uint64_t mixed(std::uint64_t v) {  // splitmix64
   v += 0x9E3779B97F4A7C15U;
@@ -152,25 +147,25 @@ void move(SimState& state, double dt) {
 }  // namespace
 
 void RenderOptions::check() const {
-  check_between("ambient", ambient, 0, 1);
-  check_between("exposure", exposure, 1e-3, 1e3);
-  check_between("shot_noise", shot_noise, 0, 1);
-  check_between("read_noise", read_noise, 0, 1);
-  check_between("vignetting", vignetting, 0, 1);
-  check_between("blur_px", blur_px, 0, 8);
-  check_between("shutter", shutter, 0, .2);
-  check_between("sub_frames", sub_frames, 1, 64);
-  check_between("carpet", carpet, 0, 1);
-  check_between("clutter", clutter, 0, 1);
-  check_between("people", people, 0, 1);
-  check_between("rays_per_side", rays_per_side, 1, 8);
+  check_between("render.ambient", ambient, 0, 1);
+  check_between("render.exposure", exposure, 1e-3, 1e3);
+  check_between("render.shot_noise", shot_noise, 0, 1);
+  check_between("render.read_noise", read_noise, 0, 1);
+  check_between("render.vignetting", vignetting, 0, 1);
+  check_between("render.blur_px", blur_px, 0, 8);
+  check_between("render.shutter", shutter, 0, .2);
+  check_between("render.sub_frames", sub_frames, 1, 64);
+  check_between("render.carpet", carpet, 0, 1);
+  check_between("render.clutter", clutter, 0, 1);
+  check_between("render.people", people, 0, 1);
+  check_between("render.rays_per_side", rays_per_side, 1, 8);
   for (const SimLamp& lamp : lamps) {
-    check_between("lamp.x", lamp.x, -1e3, 1e3);
-    check_between("lamp.y", lamp.y, -1e3, 1e3);
-    check_between("lamp.z", lamp.z, .01, 1e3);
-    check_between("lamp.intensity", lamp.intensity, 0, 1e3);
-    check_between("lamp.temperature", lamp.temperature, 1500, 15000);
-    check_between("lamp.radius", lamp.radius, 0, 100);
+    check_between("render.lamp.x", lamp.x, -1e3, 1e3);
+    check_between("render.lamp.y", lamp.y, -1e3, 1e3);
+    check_between("render.lamp.z", lamp.z, .01, 1e3);
+    check_between("render.lamp.intensity", lamp.intensity, 0, 1e3);
+    check_between("render.lamp.temperature", lamp.temperature, 1500, 15000);
+    check_between("render.lamp.radius", lamp.radius, 0, 100);
   }
   if (format != PixelFormat::yuv422p && format != PixelFormat::yuv420p)
     throw Error("render.format", "is " + std::string(to_string(format)) + ", must be yuv422p or yuv420p");
@@ -330,9 +325,9 @@ class Renderer::Work {
   int packets_per_row() const { return (width() + kLanes - 1) / kLanes; }
 
   void set_scene(const SimState& state, int observer) {
-    const auto self = std::ranges::find(state.robots, observer, &SimRobot::id);
-    expects(self != state.robots.end(), "Renderer: the observer is a robot of the state");
-    pose_ = make_pose2<FieldFrame, RobotFrame>(self->at.x, self->at.y, self->theta);
+    const SimRobot* const self = find_robot(state, observer);
+    expects(self != nullptr, "Renderer: the observer is a robot of the state");
+    pose_ = pose_of(*self);
     const FieldPoint eye = pose_ * FloorPoint{camera_.mount().x, camera_.mount().y};
     eye_ = {static_cast<float>(eye.x), static_cast<float>(eye.y), static_cast<float>(camera_.mount().z)};
     cos_ = static_cast<float>(pose_.cos);

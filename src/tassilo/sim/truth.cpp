@@ -145,13 +145,9 @@ Hit nearest_along(const std::vector<Segment>& segments, const SimState& state, i
 }
 
 const SimRobot& robot_of(const SimState& state, int id) {
-  const auto found = std::ranges::find(state.robots, id, &SimRobot::id);
-  expects(found != state.robots.end(), "truth: the observer is a robot of the state");
+  const SimRobot* const found = find_robot(state, id);
+  expects(found != nullptr, "truth: the observer is a robot of the state");
   return *found;
-}
-
-FieldFromRobot pose_of(const SimRobot& robot) {
-  return make_pose2<FieldFrame, RobotFrame>(robot.at.x, robot.at.y, robot.theta);
 }
 
 /// Its number among the others.

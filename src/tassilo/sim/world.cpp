@@ -169,9 +169,9 @@ GoalSide World::own_goal(Team team) const {
 }
 
 std::size_t World::index_of(int id) const {
-  const auto found = std::ranges::find(state_.robots, id, &SimRobot::id);
-  if (found == state_.robots.end()) throw Error("world.robot", "is " + std::to_string(id) + ", must be on the field");
-  return static_cast<std::size_t>(found - state_.robots.begin());
+  const SimRobot* const found = find_robot(state_, id);
+  if (found == nullptr) throw Error("world.robot", "is " + std::to_string(id) + ", must be on the field");
+  return static_cast<std::size_t>(found - state_.robots.data());
 }
 
 void World::add(int id, Team team) {

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "tassilo/geometry/point.h"
+#include "tassilo/geometry/pose2.h"
 #include "tassilo/scene/scene.h"
 
 namespace tassilo {
@@ -31,5 +33,15 @@ struct SimState {
   SimBall ball;
   std::vector<SimRobot> robots;  ///< By id.
 };
+
+/// Null where there is none of this id.
+inline const SimRobot* find_robot(const SimState& state, int id) {
+  const auto found = std::ranges::find(state.robots, id, &SimRobot::id);
+  return found == state.robots.end() ? nullptr : &*found;
+}
+
+inline FieldFromRobot pose_of(const SimRobot& robot) {
+  return make_pose2<FieldFrame, RobotFrame>(robot.at.x, robot.at.y, robot.theta);
+}
 
 }  // namespace tassilo

@@ -301,6 +301,12 @@ void BusTopic::check() const {
   check_range("bus.topic.depth", depth, 1, 1000);
 }
 
+std::string wire_topic_name(std::string_view ros_name) { return std::string("rt").append(ros_name); }
+
+std::string ros_topic_name(std::string_view wire_name) {
+  return wire_name.starts_with("rt/") ? std::string(wire_name.substr(2)) : "";
+}
+
 std::string to_string(const BusId& id) {
   constexpr char kDigits[] = "0123456789abcdef";
   std::string text;

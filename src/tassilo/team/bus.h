@@ -8,6 +8,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tassilo {
@@ -48,8 +49,13 @@ enum class BusReliability {
   reliable,     ///< Sent again until it arrives or `depth` newer ones have been written.
 };
 
+/// A topic of ROS 2 as it is on the wire: "rt/robot3/pose" for "/robot3/pose".
+std::string wire_topic_name(std::string_view ros_name);
+/// And back; empty for what is no topic of ROS 2.
+std::string ros_topic_name(std::string_view wire_name);
+
 struct BusTopic {
-  std::string name;  ///< As on the wire: ROS 2's /robot3/pose is "rt/robot3/pose".
+  std::string name;  ///< As on the wire.
   std::string type;  ///< As on the wire: "geometry_msgs::msg::dds_::PoseWithCovarianceStamped_".
   BusReliability reliability = BusReliability::best_effort;
   int depth = 1;       ///< The newest so many are kept, of all writers together: "keep last". 1..1000

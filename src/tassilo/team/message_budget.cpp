@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "tassilo/base/error.h"
+#include "tassilo/base/option_check.h"
 
 namespace tassilo {
 namespace {
@@ -22,17 +23,12 @@ double usual_rate(std::string_view topic) {
 }
 
 void BudgetOptions::check() const {
-  const auto within = [](const std::string& name, double value, double low, double high) {
-    if (!(value >= low && value <= high))
-      throw Error("bus." + name,
-                  "is " + std::to_string(value) + ", must be " + std::to_string(low) + " .. " + std::to_string(high));
-  };
-  within("bytes_per_second", bytes_per_second, 1000, 1e9);
-  within("picture_rate", picture_rate, 0, 100);
+  check_between("bus.bytes_per_second", bytes_per_second, 1000, 1e9);
+  check_between("bus.picture_rate", picture_rate, 0, 100);
   for (const auto& [topic, rate] : rates) {
     if (std::ranges::find(kTopics, topic, &Topic::name) == kTopics.end())
       throw Error("bus.rates." + topic, "is no topic of a robot");
-    within("rates." + topic, rate, 0.01, 1000);
+    check_between("bus.rates." + topic, rate, 0.01, 1000);
   }
 }
 

@@ -10,8 +10,8 @@ bool is_counted(const Topic& topic) {
 
 RobotVoice::RobotVoice(Bus& bus, int robot, const BudgetOptions& budget, BusReliability reliability) : budget_(budget) {
   for (const Topic& topic : kTopics)
-    writers_.emplace(topic.name,
-                     bus.writer({"rt" + ros_topic_name(topic, robot), topic.wire_type(), reliability, /*depth=*/1}));
+    writers_.emplace(topic.name, bus.writer({wire_topic_name(ros_topic_name(topic, robot)), topic.wire_type(),
+                                             reliability, /*depth=*/1}));
 }
 
 bool RobotVoice::send(const Topic& topic, std::span<const std::byte> data, double now) {

@@ -228,11 +228,7 @@ void TeamView::keep(Member& member, const msgs::TeamState& message, double arriv
   told.pose_age = told.pose_kind ? std::optional(message.pose_age) : std::nullopt;
   member.is_mirrored = message.pose_is_mirrored;
   if (!told.pose_kind) told.scene.pose.reset();
-  if (told.scene.pose) {
-    told.scene.pose->kind = *told.pose_kind;
-    told.scene.pose->age = message.pose_age;
-    told.scene.pose->mirror = message.pose_is_mirrored;
-  }
+  if (told.scene.pose) add_state(*told.scene.pose, message);
   told.frame_rate = message.frame_rate;
   told.latency = message.latency;
   told.withheld = message.withheld;

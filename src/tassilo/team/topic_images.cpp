@@ -35,8 +35,6 @@ double time_of(const ros::Header& header) {
 
 }  // namespace
 
-std::string wire_topic_name(std::string_view ros_name) { return std::string("rt").append(ros_name); }
-
 bool is_ros_topic_name(std::string_view name) {
   constexpr std::size_t longest = 200;  // 255 on the wire, and whatever is put before it
   if (name.size() < 2 || name.size() > longest || name.back() == '/') return false;

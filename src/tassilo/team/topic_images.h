@@ -16,8 +16,6 @@
 
 namespace tassilo {
 
-/// "rt/camera/image_raw" of "/camera/image_raw": how a topic of ROS 2 is named on the wire.
-std::string wire_topic_name(std::string_view ros_name);
 /// Whether this can be a topic's whole name: "/camera/image_raw", of letters, digits and underscores, no digit first in
 /// a part.
 bool is_ros_topic_name(std::string_view name);

@@ -335,6 +335,8 @@ TEST(TopicNames, AreThoseOfRos) {
     EXPECT_FALSE(is_ros_topic_name(name)) << name;
   EXPECT_FALSE(is_ros_topic_name("/" + std::string(300, 'a')));
   EXPECT_EQ(wire_topic_name("/odom"), "rt/odom");
+  EXPECT_EQ(ros_topic_name("rt/odom"), "/odom");
+  for (const char* other : {"", "rt", "rq/odom", "odom", "/odom"}) EXPECT_EQ(ros_topic_name(other), "") << other;
   EXPECT_EQ(ros_type_from_wire("sensor_msgs::msg::dds_::Image_"), "sensor_msgs/msg/Image");
   EXPECT_EQ(ros_type_from_wire("Image\33[2J"), "Image?[2J");
 }

@@ -2,6 +2,7 @@ import { reason } from "../link/api";
 import { browser_world, Channel, type ChannelWorld } from "../link/channel";
 import { type Condition, condition_of } from "../link/condition";
 import { type MonitorApi, monitor_api, type MonitorState, type NewsItem, type TeamPicture, type Trail } from "../link/monitor_api";
+import { again_and_again, on_every_frame } from "../link/loops";
 import { NewestDecoder } from "../link/newest";
 import { Observable } from "../link/observable";
 import type { FieldCamera } from "./field_camera";
@@ -114,17 +115,11 @@ export class MonitorSession {
   }
 
   start(): void {
-    const on_screen = (now: number): void => {
+    on_every_frame((now) => {
       this.tick(now);
       for (const call of this.on_screen) call(now);
-      requestAnimationFrame(on_screen);
-    };
-    requestAnimationFrame(on_screen);
-    const ask = async (): Promise<void> => {
-      await this.ask_state();
-      setTimeout(ask, 1000);
-    };
-    void ask();
+    });
+    again_and_again(() => this.ask_state(), 1000);
     setInterval(() => this.judge(), 250);
     addEventListener("online", () => this.retry());
     // Nobody looks: the radio link has better things to carry, and the robot need not draw.
