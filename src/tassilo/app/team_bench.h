@@ -20,8 +20,8 @@ namespace tassilo {
 /// says nothing of this one's ball. What is late, lost or out of order is what TeamFusion is made for.
 ///
 /// All who talk are heard as one team, since there is one ball. While they tell one color, robots seen in it are no
-/// opponents; tell they several, as when both teams of a training match are watched, a marker tells nothing, and only
-/// those whom nobody's pose explains are opponents.
+/// opponents; when they tell several, as when both teams of a training match are watched, a marker tells nothing, and
+/// only those whom nobody's pose explains are opponents.
 ///
 /// Memory is bounded, whatever comes. threads  one at a time
 class TeamBench {

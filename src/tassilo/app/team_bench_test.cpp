@@ -98,7 +98,7 @@ std::vector<Packet> packets_of(const Eye& eye, double t, const Seen& seen) {
 }
 
 constexpr FieldPoint kBall{0.5, -0.3};
-const Eye kNear{1, -1, 0, 0.2, Team::cyan, 0.04}, kFar{2, 2.5, 1, 2.8, Team::cyan, 0.12};
+constexpr Eye kNear{1, -1, 0, 0.2, Team::cyan, 0.04}, kFar{2, 2.5, 1, 2.8, Team::cyan, 0.12};
 
 /// All images of a second, in their order.
 std::vector<std::vector<Packet>> play(const std::vector<Eye>& eyes, const Seen& seen, double seconds = 1) {
