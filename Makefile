@@ -11,9 +11,16 @@ help:  ## this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1 \t\2/' | expand -t 22
 
 .PHONY: demo
-demo: install-deps  ## install what is missing, build, run the vision on the shipped recording, say where the video is
+demo: program  ## install what is missing, build, play a simulated match and show it in a browser; DURATION=20 ends it
+	build/release/bin/tassilo demo --report $(if $(DURATION),--duration $(DURATION)) $(DEMO_OPTIONS)
+
+.PHONY: recording
+recording: program  ## the vision on a shipped recording, compared with its truth; says where the video is
+	tools/recording.sh
+
+.PHONY: program
+program: install-deps
 	$(call build,release) --target tassilo $(if $(and $(shell command -v node),$(shell command -v npm)),webui)
-	tools/demo.sh
 
 .PHONY: test
 test: install-deps  ## install what is missing, build everything, run all tests; PRESET=dev|asan|tsan for another build

@@ -16,9 +16,18 @@ from program import TIMEOUT_S, ProgramTest, main
 
 
 def rows(text):
-    """{what: (values, median in cm, 90 % in cm)} of a report."""
-    return {match[1].strip(): (int(match[2]), float(match[3]), float(match[4]))
-            for match in re.finditer(r"^(ball, each robot|pose|ball, team|ball, surest robot) +(\d+) +([\d.]+) +([\d.]+)$", text, re.M)}
+    """{what: [values or moments, median in cm, 90 % in cm, known in %, ...]} of a report."""
+    found = {}
+    for line in text.splitlines():
+        if match := re.fullmatch(r"(\S.*?)((?: +[\d.]+){3,6})", line):
+            found[match[1]] = [float(word) for word in match[2].split()]
+    return found
+
+
+def words_between_robots(text):
+    """{what became of them: how many}; "told" is all."""
+    line = re.search(r"words between robots: (.+)", text)[1]
+    return {name: int(number) for number, name in re.findall(r"(\d+) ([a-z ]+?)(?: [=+]|$)", line)}
 
 
 class Demo(ProgramTest):
@@ -32,8 +41,15 @@ class Demo(ProgramTest):
         report = rows(told)
         self.assertGreater(report["pose"][0], 150, told)
         self.assertLess(report["pose"][1], 6, told)
-        self.assertLess(report["ball, each robot"][1], 10, told)
-        self.assertGreater(report["ball, team"][0], 0, told)
+        self.assertLess(report["ball, as each robot sees it"][1], 10, told)
+        for who in ("surest robot by itself", "robots that see it, and hear", "robots that only hear", "bench"):
+            moments, median, _, known = report[who][:4]
+            self.assertGreater(moments, 20, told)
+            self.assertLess(median, 15, told)
+            self.assertGreater(known, 90, told)
+        self.assertEqual(len([row for row in report if re.match(r"bench, \d+ % lost, \d+ ms late", row)]), 16, told)
+        # What is lost and late can only be worse, by more than luck.
+        self.assertLess(report["bench, 0 % lost, 0 ms late"][1], report["bench, 60 % lost, 500 ms late"][1], told)
 
     def test_the_same_seed_is_the_same_match(self):
         first, second, other = (re.sub(r"played in.*", "", self.succeeds(*self.short, "--duration", "2", "--seed", seed).out) for seed in "778")
@@ -42,8 +58,16 @@ class Demo(ProgramTest):
 
     def test_in_the_dark_nothing_is_seen(self):
         told = self.succeeds(*self.short, "--duration", "3", "--dark").out
-        self.assertRegex(told, r"ball, each robot +never")
+        self.assertRegex(told, r"ball, as each robot sees it +never")
         self.assertRegex(told, r"cyan 0 : \d+ magenta")
+
+    def test_with_unrest_every_message_is_accounted_for(self):
+        told = self.succeeds(*self.short, "--duration", "20", "--unrest", "--loss", ".2", "--delay", ".1").out
+        words = words_between_robots(told)
+        self.assertEqual(words["told"], sum(words.values()) - words["told"], told)
+        for what in ("lost", "refused", "taken"):
+            self.assertGreater(words[what], 0, told)
+        self.assertRegex(told, r"robots left [1-9]\d* times, came back [1-9]\d* times")
 
     def test_the_monitor_shows_it(self):
         demo = self.start("demo", "--robots", "2", "--fps", "10", "--port", "0", "--domain", free_domain(), "--own-goal", "blue",
@@ -73,6 +97,8 @@ class Demo(ProgramTest):
     def test_wrong_usage_is_refused(self):
         self.refuses("demo", "--headless", says="--duration")
         self.refuses("demo", "--robots", "9", says="--robots")
+        self.refuses("demo", "--opponents", "2", says="--opponents")
+        self.refuses("demo", "--headless", "--duration", "1", "--speed", "2", says="--speed")
         self.fails("demo", "--field", "moon", "--duration", "1", says="moon")
 
 

@@ -3,7 +3,9 @@
 
 usage: tests/monitor_browser_test.py PROGRAM PAGES SCREENSHOTS TEAM_TRAFFIC [unittest arguments]
 """
+import re
 import shutil
+import subprocess
 import sys
 import time
 import unittest
@@ -48,6 +50,12 @@ class Browser(Watched):
         self.end_all()
         self.monitor("watched.mcap", "--pages", self.pages)
         self.browse("--robots", "10")
+
+    def test_a_match_is_watched(self):
+        self.process = self.start("demo", "--fps", "10", "--port", "0", "--domain", self.domain, "--pages", self.pages, stdout=subprocess.PIPE, text=True)
+        self.running.append(self.process)
+        self.port = next(found[1] for line in self.process.stdout if (found := re.search(r"http://127\.0\.0\.1:(\d+)/", line)))
+        self.browse("--robots", "4", "--only", "match")
 
 
 if __name__ == "__main__":

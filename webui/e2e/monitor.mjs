@@ -7,6 +7,7 @@
 //          --robots N       so many are waited for, 10
 //          --least-rate N   drawn a second, over 5 s; 0: it is only told. 0
 //          --only troubles  only whether the troubles of robots are told
+//          --only match     only a look at a simulated match, through the eyes of one robot, too
 // COMMAND starts a server that prints its address (http://...); it is ended afterwards. Exit code 77: skipped, no browser.
 // The server must have heard the robots for half a minute, or its log be as long, and at least one must have a pose and move.
 import assert from "node:assert/strict";
@@ -132,6 +133,25 @@ async function main(url, browser, screenshots, { robots: wanted, "least-rate": l
         await until(`robot ${id}: ${words}`, async () => (await row.innerText()).includes(words));
       }
       await picture("troubles");
+    });
+    return end();
+  }
+
+  if (only === "match") {
+    await step("a match is shown, and what a robot's rendered camera sees", async () => {
+      await until(`${wanted} robots know where they are, and one sees the ball`, async () => {
+        const robots = (await shown_picture())?.robots ?? [];
+        const placed = robots.filter(({ scene: { pose }, role }) => pose !== null && role !== "");
+        return placed.length >= Number(wanted) && robots.some(({ scene: { balls } }) => balls.length > 0);
+      });
+      // Some seconds of play, for the trails.
+      await pause(6000);
+      const striker = (await shown_picture()).robots.find(({ role, scene: { balls } }) => role === "striker" && balls.length > 0)
+        ?? (await shown_picture()).robots.find(({ scene: { balls } }) => balls.length > 0) ?? (await shown_picture()).robots[0];
+      await page.locator(`table.robots tbody tr[data-robot="${striker.id}"]`).click();
+      await until("its picture is there", async () => (await page.locator('[data-show="robot-picture"][data-there="true"]').count()) === 1);
+      await pause(1000);
+      await picture("match");
     });
     return end();
   }

@@ -9,7 +9,8 @@
 
 namespace tassilo {
 
-/// What the middleware complains of, and who cannot hear whom, each told once.
+/// What the middleware complains of, and who cannot hear whom, each kind told once:
+/// the first of it.
 ///
 /// threads  one at a time
 class BusComplaints {
@@ -18,7 +19,7 @@ class BusComplaints {
   std::vector<std::string> news(const Bus& bus);
 
  private:
-  std::set<std::string, std::less<>> told_;
+  std::set<std::string, std::less<>> told_;  ///< Kinds.
 };
 
 }  // namespace tassilo

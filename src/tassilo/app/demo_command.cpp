@@ -4,7 +4,6 @@
 #include <atomic>
 #include <chrono>
 #include <memory>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <thread>
@@ -17,7 +16,6 @@
 #include "tassilo/app/sim_match.h"
 #include "tassilo/app/web_arguments.h"
 #include "tassilo/base/error.h"
-#include "tassilo/base/median.h"
 #include "tassilo/files/field_file.h"
 
 namespace tassilo {
@@ -29,32 +27,11 @@ struct DemoArguments {
   BusArguments bus;
   std::string field = "msl98", own_goal = "yellow", record;
   std::optional<double> duration;
+  double speed = 1, memory_s = MonitorOptions{}.memory_s;
   bool is_headless = false, reports = false, quiet = false;
 };
 
 using Clock = std::chrono::steady_clock;
-
-std::string error_line(const char* what, const std::vector<double>& errors) {
-  if (errors.empty()) return fmt::format("{:<22}  never\n", what);
-  return fmt::format("{:<22} {:>7} {:>9.1f} {:>8.1f}\n", what, errors.size(), 100 * quantile(errors, 0.5),
-                     100 * quantile(errors, 0.9));
-}
-
-void print_report(const SimMatch& match) {
-  const SimMatchReport& report = match.report();
-  fmt::print("\nagainst the truth        values median cm    90 % cm\n");
-  fmt::print("{}", error_line("ball, each robot", report.ball_errors));
-  fmt::print("{}", error_line("pose", report.pose_errors));
-  fmt::print("{}", error_line("ball, team", report.team_errors));
-  fmt::print("{}", error_line("ball, surest robot", report.best_errors));
-  if (report.seen > 0)
-    fmt::print("team ball known in {:.1f} % of the {} moments in which a robot saw it\n",
-               100. * static_cast<double>(report.known) / static_cast<double>(report.seen), report.seen);
-  if (!report.nees.empty())
-    fmt::print("squared error by covariance: {:.2f} in the mean; 2 is right\n",
-               std::accumulate(report.nees.begin(), report.nees.end(), 0.) / static_cast<double>(report.nees.size()));
-  fmt::print("longest time without a pose within half a metre: {:.1f} s\n", report.longest_lost);
-}
 
 GoalSide side_of(const FieldModel& field, const std::string& color) {
   const auto side = side_of_goal(field, color == to_string(GoalColor::blue) ? GoalColor::blue : GoalColor::yellow);
@@ -62,29 +39,38 @@ GoalSide side_of(const FieldModel& field, const std::string& color) {
   return *side;
 }
 
-/// Plays until it is time; in real time unless headless.
+bool is_paced(const DemoArguments& arguments) { return !arguments.is_headless && arguments.speed > 0; }
+
+/// Plays until it is time.
 void play(SimMatch& match, const DemoArguments& arguments) {
   const auto begin = Clock::now();
-  std::size_t called = 0;
+  // Who cannot look at a clock is told how far it is.
+  const double told_every = std::min(60., arguments.duration.value_or(600) / 10);
+  double next_told = is_paced(arguments) || arguments.quiet ? 1e18 : told_every;
   while (!is_interrupted() && (!arguments.duration || match.t() < *arguments.duration)) {
     match.step();
-    for (; called < match.calls().size(); ++called) {
-      const RefereeEvent& event = match.calls()[called];
+    for (const RefereeEvent& event : match.take_calls()) {
       if (arguments.quiet || event.call == RefereeCall::kick_off) continue;
       fmt::print("{:7.1f} s  {}{}   {} : {}\n", event.t, to_string(event.call),
                  event.call == RefereeCall::goal ? fmt::format(" for {}", to_string(event.team)) : "",
                  match.score().cyan, match.score().magenta);
       std::fflush(stdout);
     }
+    if (match.t() >= next_told) {
+      next_told += told_every;
+      fmt::print("{:7.1f} s  played\n", match.t());
+      std::fflush(stdout);
+    }
     for (const std::string& line : match.news()) fmt::print("{}\n", line);
-    if (!arguments.is_headless)
-      std::this_thread::sleep_until(
-          begin + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(match.t())));
+    if (is_paced(arguments))
+      std::this_thread::sleep_until(begin + std::chrono::duration_cast<Clock::duration>(
+                                                std::chrono::duration<double>(match.t() / arguments.speed)));
   }
   if (arguments.quiet) return;
+  const MatchReport report = match.report();
   const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
   fmt::print("\n{:.1f} s played in {:.1f} s; {:.1f} images a second and robot; cyan {} : {} magenta\n", match.t(),
-             seconds, static_cast<double>(match.report().images) / arguments.match.robots / std::max(seconds, 1e-9),
+             seconds, static_cast<double>(report.images) / arguments.match.robots / std::max(seconds, 1e-9),
              match.score().cyan, match.score().magenta);
 }
 
@@ -93,6 +79,8 @@ int demo(const DemoArguments& arguments) {
   SimMatchOptions options = arguments.match;
   options.field = read_field(arguments.field);
   options.cyan_own_goal = side_of(options.field, arguments.own_goal);
+  options.compares_radios = arguments.reports;
+  options.is_paced = is_paced(arguments);
   if (!arguments.is_headless) options.bus = arguments.bus.options();
   if (!arguments.quiet) {
     fmt::print("training the colors on rendered stills\n");
@@ -109,6 +97,7 @@ int demo(const DemoArguments& arguments) {
     monitor.bus = *options.bus;
     monitor.web = arguments.web.options();
     monitor.record = arguments.record;
+    monitor.memory_s = arguments.memory_s;
     LiveMonitor live(monitor);
     tell_address(monitor.web, live.url());
     std::atomic<bool> is_over = false;
@@ -124,8 +113,9 @@ int demo(const DemoArguments& arguments) {
     is_over = true;
     listener.join();
     if (trouble) throw *trouble;
+    if (!arguments.quiet) fmt::print("bus: {}", live.summary());
   }
-  if (arguments.reports) print_report(match);
+  if (arguments.reports) fmt::print("{}", text_of(match.report()));
   return 0;
 }
 
@@ -145,7 +135,7 @@ Command add_demo(CLI::App& program) {
       ->check(CLI::IsMember({"yellow", "blue"}))
       ->capture_default_str();
   command->add_option("--fps", arguments->match.frame_rate, "images a second of each robot")
-      ->check(CLI::Range(5, 60))
+      ->check(CLI::Range(5., 60.))
       ->capture_default_str();
   command->add_option("--seed", arguments->match.seed, "another match")->capture_default_str();
   command->add_option("--loss", arguments->match.loss, "share of what robots tell each other that is lost")
@@ -154,11 +144,24 @@ Command add_demo(CLI::App& program) {
   command->add_option("--delay", arguments->match.delay_s, "how long the rest takes, in the mean [s]")
       ->check(CLI::Range(0., 1.))
       ->capture_default_str();
+  command->add_option("--opponents", arguments->match.opponents, "how fast magenta drives, of cyan's speed")
+      ->check(CLI::Range(0., 1.))
+      ->capture_default_str();
+  command->add_flag("--unrest", arguments->match.has_unrest,
+                    "robots leave and come back, and garbage is sent to those who play on");
   command->add_flag("--dark", arguments->match.is_dark, "cyan's cameras show black");
   command->add_option("--duration", arguments->duration, "end after so many seconds of play (default: Ctrl-C)")
       ->check(CLI::PositiveNumber);
   auto* headless = command->add_flag("--headless", arguments->is_headless,
                                      "without bus and monitor, as fast as it goes; needs --duration");
+  command->add_option("--speed", arguments->speed, "of play, real time being 1; 0: as fast as it goes")
+      ->excludes(headless)
+      ->check(CLI::Range(0., 10.))
+      ->capture_default_str();
+  command->add_option("--memory", arguments->memory_s, "seconds that can be looked back at in the monitor")
+      ->excludes(headless)
+      ->check(CLI::Range(1., 3600.))
+      ->capture_default_str();
   command->add_flag("--report", arguments->reports, "compare what was seen and known with the truth, at the end");
   command->add_option("--record", arguments->record, "write all that is told into this log, NAME.mcap")
       ->excludes(headless);

@@ -63,7 +63,7 @@ Command add_monitor(CLI::App& program) {
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
   command->add_option("--memory", arguments->monitor.memory_s, "seconds that can be looked back at")
-      ->check(CLI::Range(1, 3600))
+      ->check(CLI::Range(1., 3600.))
       ->capture_default_str();
   arguments->bus.add_to(*command);
   arguments->web.add_to(*command);

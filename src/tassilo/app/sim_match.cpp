@@ -3,23 +3,21 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
+#include <utility>
 
+#include "tassilo/app/unix_clock.h"
 #include "tassilo/base/option_check.h"
-#include "tassilo/color/quality.h"
-#include "tassilo/color/train.h"
 #include "tassilo/geometry/angle.h"
-#include "tassilo/message/from_scene.h"
-#include "tassilo/message/to_scene.h"
-#include "tassilo/region/morphology.h"
-#include "tassilo/region/raster.h"
+#include "tassilo/localize/localize.h"
 
 namespace tassilo {
 namespace {
 
-constexpr int kFirstMagenta = 101;
-constexpr int kBench = 0;               // hears what all tell
+constexpr int kFirstCyan = 1, kFirstMagenta = 101;
+constexpr int kNobody = 77;             // is of no team
 constexpr double kOdometryStep = 0.01;  // [s]
+// While there is unrest: how long a robot plays on until another one leaves, and how long that is away. [s]
+constexpr double kAbsenceEvery = 8, kAbsence = 6;
 
 /// A camera as robots of that league had: 384 x 172 pixels, 83 degrees wide.
 CameraModel match_camera() {
@@ -56,27 +54,6 @@ TeamFusionOptions fusion_of(Team team) {
   return options;
 }
 
-/// Pixels that surely are of a class: those whose neighbors are, too, over the width of two chroma samples.
-void take_samples(const Frame& frame, const SimView& view, int group, std::vector<ColorSample>& samples) {
-  const ByteView labels{view.labels.data(), view.width, view.height, view.width};
-  for (int label = 0; label <= kColorClassCount; ++label) {
-    const Region region = region_where(labels, [&](int value) { return value == label; });
-    std::vector<YuvPixel> pixels = pixels_of(frame.view, erosion(region, rectangle(5, 5)));
-    if (!pixels.empty()) samples.push_back({static_cast<ColorClass>(label), group, std::move(pixels)});
-  }
-}
-
-/// Share of the samples' pixels that a table of the other stills classifies right.
-double quality_of(const std::vector<ColorSample>& samples, ColorRange range) {
-  const ColorQuality quality = cross_validate(samples, range);
-  std::int64_t right = 0, all = 0;
-  for (std::size_t label = 0; label < quality.confusion.size(); ++label) {
-    right += quality.confusion[label][label];
-    for (const std::int64_t pixels : quality.confusion[label]) all += pixels;
-  }
-  return all > 0 ? static_cast<double>(right) / static_cast<double>(all) : 0;
-}
-
 Frame black(const Frame& like) {
   const int width = like.view.width(), height = like.view.height();
   struct Planes {
@@ -104,6 +81,7 @@ std::optional<ToldBall> told(const std::optional<TeamBall>& ball) {
 void SimMatchOptions::check() const {
   check_between("match.robots", robots, 1, 8);
   check_between("match.frame_rate", frame_rate, 5, 60);
+  check_between("match.opponents", opponents, 0, 1);
   check_between("match.loss", loss, 0, 0.95);
   check_between("match.delay", delay_s, 0, 1);
 }
@@ -114,92 +92,108 @@ SimMatch::SimMatch(const SimMatchOptions& options)
       camera_(match_camera()),
       mount_(match_mount()),
       renderer_(options.field, {camera_, mount_}, rendering(options.seed)),
-      bench_(fusion_of(Team::cyan)),
+      hall_(train_on_stills(renderer_, options.field, options.seed)),
+      air_({options.loss, options.delay_s, options.seed}),
       random_(options.seed) {
-  train_colors();
   for (int i = 0; i < options_.robots; ++i) {
-    world_.add(1 + i, Team::cyan);
+    world_.add(kFirstCyan + i, Team::cyan);
     world_.add(kFirstMagenta + i, Team::magenta);
   }
   for (int i = 0; i < options_.robots; ++i) {
-    seat_cyan(1 + i, i == 0 && options_.robots > 1);
-    seat_magenta(kFirstMagenta + i, i == 0 && options_.robots > 1);
+    seat_cyan(kFirstCyan + i);
+    seat_magenta(kFirstMagenta + i);
   }
+  if (options_.compares_radios)
+    for (const double loss : {0., 0.1, 0.3, 0.6})
+      for (const double delay_s : {0., 0.1, 0.2, 0.5}) report_.radios.push_back({loss, delay_s, {}});
+  benches_.push_back({MatchAir({options_.loss, options_.delay_s, options_.seed + 1}), TeamFusion(fusion_of(Team::cyan)),
+                      &report_.bench});
+  for (RadioFigures& radio : report_.radios)
+    benches_.push_back(
+        {MatchAir({radio.loss, radio.delay_s, options_.seed + 2}), TeamFusion(fusion_of(Team::cyan)), &radio.ball});
+  next_absence_ = kAbsenceEvery;
 }
 
-/// On stills of this hall, from all over the field: what a team does in the hour before a match.
-void SimMatch::train_colors() {
-  constexpr int stills = 16;
-  std::mt19937_64 random(options_.seed + 1);
-  std::uniform_real_distribution<double> place(-0.4, 0.4), angle(-3.1, 3.1);
-  std::vector<ColorSample> samples;
-  for (int still = 0; still < stills; ++still) {
-    SimState state;
-    state.ball.radius = options_.field.ball.radius.middle();
-    SimRobot eye;
-    eye.id = 1;
-    eye.radius = options_.field.robots.width.middle() / 2;
-    eye.height = options_.field.robots.height.middle();
-    eye.at = {place(random) * options_.field.length, place(random) * options_.field.width};
-    // Goals are what is rarest: every other still looks at one.
-    const double goal_x = still % 4 < 2 ? options_.field.length / 2 : -options_.field.length / 2;
-    eye.theta = still % 2 == 0 ? std::atan2(-eye.at.y, goal_x - eye.at.x) : angle(random);
-    const auto before = [&](double distance, double side) {
-      return FieldPoint{eye.at.x + distance * std::cos(eye.theta) - side * std::sin(eye.theta),
-                        eye.at.y + distance * std::sin(eye.theta) + side * std::cos(eye.theta)};
-    };
-    state.ball.at = before(0.7 + 0.08 * still, still % 3 - 1.);
-    SimRobot cyan = eye, magenta = eye;
-    cyan.id = 2;
-    cyan.at = before(1.2, 0.5);
-    magenta.id = 3;
-    magenta.team = Team::magenta;
-    magenta.at = before(1.3, -0.6);
-    state.robots = {eye, cyan, magenta};
-    const Frame frame = renderer_.render(state, eye.id);
-    take_samples(frame, renderer_.look(state, eye.id), still, samples);
-  }
-  colors_ = tassilo::train_colors(samples, renderer_.options().range);
-  colors_quality_ = quality_of(samples, renderer_.options().range);
+MatchReport SimMatch::report() const {
+  MatchReport report = report_;
+  report.air = air_.counts();
+  report.on_the_way = static_cast<std::int64_t>(air_.on_the_way());
+  return report;
 }
 
-void SimMatch::seat_cyan(int id, bool is_goalkeeper) {
+/// The first of each team, when it is more than one.
+bool SimMatch::is_goalkeeper(int id) const { return options_.robots > 1 && (id == kFirstCyan || id == kFirstMagenta); }
+
+void SimMatch::seat_cyan(int id) {
   Seat seat;
   seat.id = id;
   RobotSetup setup;
-  setup.vision.colors = colors_;
+  setup.vision.colors = hall_.colors;
   setup.vision.field = options_.field;
   setup.vision.camera = camera_;
   setup.vision.mount = mount_;
   setup.registry = built_in_stages();
   setup.robot.id = id;
   setup.robot.team = Team::cyan;
-  // Where it was put is known, as well as a hand puts it.
-  const SimRobot* const robot = find_robot(world_.state(), id);
-  setup.vision.start_pose = gaussian_of({robot->at.x, robot->at.y, robot->theta, 0.1, 0.1});
   Vision vision(setup.vision, setup.registry);
   seat.configuration = std::make_shared<const Configuration>(Configuration{0, 0, std::move(setup), std::move(vision)});
   seat.fusion = TeamFusion(fusion_of(Team::cyan));
+  seat.alone = TeamFusion(fusion_of(Team::cyan));
   seat.player = player_options(options_.field);
-  seat.player.is_goalkeeper = is_goalkeeper;
+  seat.player.is_goalkeeper = is_goalkeeper(id);
   if (options_.bus) {
     TeamSenderOptions told;
     told.robot = id;
     told.bus = options_.bus;
     seat.sender = std::make_unique<TeamSender>(told);
-    seat.sender->begin(0, false);
+    seat.sender->begin(world_.state().t, false);
+    clock_ = unix_now() - world_.state().t;
   }
-  seats_.emplace(id, std::move(seat));
+  place_by_hand(seats_.insert_or_assign(id, std::move(seat)).first->second);
 }
 
-void SimMatch::seat_magenta(int id, bool is_goalkeeper) {
+void SimMatch::seat_magenta(int id) {
   Opponent opponent;
   EyesOptions eyes;
   eyes.seed = options_.seed;
   opponent.eyes = std::make_unique<IdealEyes>(eyes, id);
   opponent.player = player_options(options_.field);
-  opponent.player.is_goalkeeper = is_goalkeeper;
-  opponents_.emplace(id, std::move(opponent));
+  opponent.player.is_goalkeeper = is_goalkeeper(id);
+  opponent.player.max_speed *= options_.opponents;
+  opponent.player.dribble_speed *= options_.opponents;
+  opponents_.insert_or_assign(id, std::move(opponent));
+}
+
+/// Somebody puts it on its place and says where that is, as well as a hand puts it.
+void SimMatch::place_by_hand(Seat& seat) {
+  const SimRobot* const robot = find_robot(world_.state(), seat.id);
+  const PoseGaussian place = gaussian_of({robot->at.x, robot->at.y, robot->theta, 0.1, 0.1});
+  seat.workspace.history.clear();
+  seat.workspace.history.beliefs.add(world_.state().t, belief_in(place, world_.state().t));
+}
+
+/// One robot at a time is away.
+void SimMatch::let_leave_and_come_back(double now) {
+  if (absence_) {
+    if (now < absence_->until) return;
+    const bool is_cyan = absence_->id < kFirstMagenta;
+    world_.add(absence_->id, is_cyan ? Team::cyan : Team::magenta);
+    is_cyan ? seat_cyan(absence_->id) : seat_magenta(absence_->id);
+    absence_.reset();
+    ++report_.came_back;
+    return;
+  }
+  if (now < next_absence_) return;
+  std::uniform_real_distribution<double> chance(0, 1);
+  const int id = static_cast<int>(random_() % static_cast<unsigned>(options_.robots)) +
+                 (random_() % 2 == 0 ? kFirstCyan : kFirstMagenta);
+  world_.remove(id);
+  seats_.erase(id);
+  opponents_.erase(id);
+  air_.leave(id);
+  absence_ = {id, now + kAbsence * (0.5 + chance(random_))};
+  next_absence_ = absence_->until + kAbsenceEvery * (0.5 + chance(random_));
+  ++report_.left;
 }
 
 void SimMatch::see_and_play(Seat& seat) {
@@ -210,7 +204,6 @@ void SimMatch::see_and_play(Seat& seat) {
   frame.index = frame_;
   const Scene scene = seat.configuration->vision(frame, seat.workspace, &seat.odometry);
   ++report_.images;
-  note(seat, scene);
 
   // Its own image reaches it without the air.
   TeamObservation own;
@@ -221,7 +214,9 @@ void SimMatch::see_and_play(Seat& seat) {
   own.balls = scene.balls;
   own.robots = scene.robots;
   seat.fusion.add(own, now);
+  seat.alone.add(own, now);
   const TeamWorld team = seat.fusion.at(now);
+  note(seat, scene);
 
   std::vector<Teammate> mates;
   for (const auto& [id, mate] : seat.mates) {
@@ -240,70 +235,76 @@ void SimMatch::see_and_play(Seat& seat) {
   PlayerStep step = tassilo::play(seat.state, input, seat.player);
   seat.state = std::move(step.state);
   seat.command = step.output.wheels;
-  tell(seat, scene, step.output);
+  ++report_.deeds[step.output.action];
+  tell(seat, scene, step.output.role);
   if (seat.sender) {
     const TeamRole role{std::string(to_string(step.output.role)), step.output.action, step.output.planning_state};
-    seat.sender->say(frame, scene, seat.workspace, seat.configuration, &seat.odometry, std::nullopt, role);
+    const double latency_s = scene.timing.back().ms / 1e3;  // the camera of the match takes no time
+    seat.sender->say(frame, scene, seat.workspace, seat.configuration, &seat.odometry, latency_s, role);
   }
 }
 
 /// As messages, each to each, some lost and some late.
-void SimMatch::tell(Seat& seat, const Scene& scene, const PlayerOutput& output) {
-  const auto word = std::make_shared<const Word>(word_of(seat.id, scene, output));
-  std::uniform_real_distribution<double> chance(0, 1);
-  const auto send = [&](int to) {
-    if (chance(random_) < options_.loss) return;
-    air_.push_back({scene.t + 2 * options_.delay_s * chance(random_), to, word});
-  };
+void SimMatch::tell(const Seat& seat, const Scene& scene, Role role) {
+  const auto packet = std::make_shared<const TeamPacket>(packet_of(seat.id, Team::cyan, scene, role));
   for (const auto& [id, other] : seats_)
-    if (id != seat.id) send(id);
-  send(kBench);
+    if (id != seat.id) air_.tell(scene.t, seat.id, id, packet);
+  for (Bench& bench : benches_) bench.air.tell(scene.t, seat.id, 0, packet);
+  if (options_.has_unrest) send_garbage(scene.t, packet);
 }
 
-/// What is left of it when it has been told: everybody reads the same bytes.
-SimMatch::Word SimMatch::word_of(int robot, const Scene& scene, const PlayerOutput& output) {
-  const MessageContext context{.robot = robot, .team = Team::cyan};
-  const ros::Time stamp = ros_time(scene.t);
-  const auto over_the_air = [](const auto& message) {
-    return *decoded<std::remove_cvref_t<decltype(message)>>(encoded(message));
-  };
-  const msgs::TeamState state = over_the_air(team_state_message(scene, stamp, context));
-  Word word;
-  word.role = output.role;
-  word.observation.robot = robot;
-  word.observation.t = seconds_of(state.header.stamp);
-  word.observation.stamp = static_cast<std::int64_t>(word.observation.t * 1e9);
-  if (scene.pose) {
-    word.observation.pose = pose_from(over_the_air(pose_message(*scene.pose, stamp)));
-    add_state(*word.observation.pose, state);
+/// The world outside has one time: there, what is told happened just now. Where the match cannot keep up with time, or
+/// is not to, its own goes another way.
+void SimMatch::keep_clock(double now) {
+  constexpr double behind = 0.25;  // nobody minds [s]
+  if (options_.is_paced && unix_now() - now - clock_ < behind) return;
+  clock_ = unix_now() - now;
+  for (auto& [id, seat] : seats_) seat.sender->begin(now, false);
+}
+
+/// In the name of a robot of the team or of one that nobody knows, to all.
+void SimMatch::send_garbage(double now, const std::shared_ptr<const TeamPacket>& packet) {
+  const auto garbage = std::make_shared<const TeamPacket>(spoiled(*packet, random_));
+  const int name = random_() % 2 == 0 ? kNobody : kFirstCyan + static_cast<int>(random_() % 4);
+  for (const auto& [id, other] : seats_) air_.tell(now, name, id, garbage);
+  benches_.front().air.tell(now, name, 0, garbage);
+}
+
+void SimMatch::count(Contribution contribution) {
+  switch (contribution) {
+    case Contribution::taken:
+      ++report_.taken;
+      break;
+    case Contribution::duplicate:
+      ++report_.repeated;
+      break;
+    case Contribution::too_late:
+      ++report_.late;
+      break;
+    case Contribution::refused:
+      ++report_.of_no_time;
+      break;
   }
-  word.observation.balls = balls_from(over_the_air(balls_message(scene, stamp, context)));
-  word.observation.robots = robots_from(over_the_air(robots_message(scene, stamp, context)));
-  return word;
 }
 
 void SimMatch::hear(double now) {
-  for (const Packet& packet : air_) {
-    if (packet.due > now) continue;
-    const TeamObservation& observation = packet.word->observation;
-    if (packet.to == kBench) {
-      bench_.add(observation, now);
-      continue;
-    }
-    Seat& seat = seats_.at(packet.to);
-    seat.fusion.add(observation, now);
+  for (const auto& [to, word] : air_.hear(now)) {
+    Seat& seat = seats_.at(to);
+    const TeamObservation& observation = word.observation;
+    const Contribution contribution = seat.fusion.add(observation, now);
+    count(contribution);
+    if (contribution != Contribution::taken) continue;
     double& heard_at = seat.heard_at[observation.robot];
     if (observation.t < heard_at) continue;
     heard_at = observation.t;
     Teammate& mate = seat.mates[observation.robot];
     mate.id = observation.robot;
-    mate.is_goalkeeper = seats_.at(observation.robot).player.is_goalkeeper;  // agreed before the match
-    mate.role = packet.word->role;
+    mate.is_goalkeeper = is_goalkeeper(observation.robot);  // agreed before the match
+    mate.role = word.role;
     mate.pose.reset();
     if (observation.pose)
       mate.pose = make_pose2<FieldFrame, RobotFrame>(observation.pose->x, observation.pose->y, observation.pose->theta);
   }
-  std::erase_if(air_, [&](const Packet& packet) { return packet.due <= now; });
 }
 
 void SimMatch::play(int id, Opponent& opponent) {
@@ -324,24 +325,35 @@ void SimMatch::go_on(double seconds) {
   std::vector<RobotCommand> commands;
   for (const auto& [id, seat] : seats_) commands.push_back({id, seat.command});
   for (const auto& [id, opponent] : opponents_) commands.push_back({id, opponent.command});
+  bool is_kick_off = false;
   for (double left = seconds; left > 1e-9; left -= kOdometryStep) {
-    for (const RefereeEvent& event : world_.step(std::min(left, kOdometryStep), commands)) calls_.push_back(event);
+    for (const RefereeEvent& event : world_.step(std::min(left, kOdometryStep), commands)) {
+      calls_.push_back(event);
+      called_at_ = event.t;
+      is_kick_off = is_kick_off || event.call == RefereeCall::kick_off;
+    }
     for (auto& [id, seat] : seats_) {
       OdometrySample sample = world_.odometry(id);
       sample.t = world_.state().t;
       seat.odometry.add(sample);
     }
   }
+  if (is_kick_off && world_.options().places_robots_at_kick_off)
+    for (auto& [id, seat] : seats_) place_by_hand(seat);
 }
 
 void SimMatch::step() {
   if (frame_ == 0) go_on(kOdometryStep);  // odometry begins before the first image
   const double now = world_.state().t;
-  sightings_.clear();
+  if (options_.has_unrest) let_leave_and_come_back(now);
   hear(now);
+  if (options_.bus) keep_clock(now);
   for (auto& [id, seat] : seats_) see_and_play(seat);
   for (auto& [id, opponent] : opponents_) play(id, opponent);
-  note_team(now);
+  // Those who only listen hear at once what is not late.
+  for (Bench& bench : benches_)
+    for (const auto& [to, word] : bench.air.hear(now)) bench.fusion.add(word.observation, now);
+  note_balls(now);
   ++frame_;
   go_on(1 / options_.frame_rate);
   report_.seconds = world_.state().t;
@@ -355,7 +367,7 @@ void SimMatch::note(Seat& seat, const Scene& scene) {
   bool is_lost = true;
   if (scene.pose) {
     const double error = std::hypot(scene.pose->x - robot->at.x, scene.pose->y - robot->at.y);
-    report_.pose_errors.push_back(error);
+    report_.pose_errors.add(error);
     is_lost = error > lost;
   }
   if (!is_lost)
@@ -364,35 +376,42 @@ void SimMatch::note(Seat& seat, const Scene& scene) {
     seat.lost_since = scene.t;
   if (seat.lost_since) report_.longest_lost = std::max(report_.longest_lost, scene.t - *seat.lost_since);
   const FloorPoint ball = inverse(pose_of(*robot)) * truth.ball.at;
+  seat.sees_ball = false;
   for (const Ball& seen : scene.balls) {
     if (!seen.floor) continue;
     const double error = distance(seen.floor->position.mean, ball);
     constexpr double another = 0.5;  // further off, it is not this ball but none [m]
     if (error > another) continue;
-    report_.ball_errors.push_back(error);
-    if (scene.pose) {
-      const auto believed = make_pose2<FieldFrame, RobotFrame>(scene.pose->x, scene.pose->y, scene.pose->theta);
-      sightings_.push_back(
-          {seen.floor->position.covariance.trace(), distance(believed * seen.floor->position.mean, truth.ball.at)});
-    }
+    report_.ball_errors.add(error);
+    seat.sees_ball = true;
     break;
   }
 }
 
-/// The team's ball as the bench knows it, against the sighting that is surest by its own account.
-void SimMatch::note_team(double t) {
+/// What everybody makes of the ball, while anybody sees it.
+void SimMatch::note_balls(double t) {
   // A ball that the referee has just carried somewhere else did not roll there: nobody can know it at once.
   constexpr double carried = 1;  // [s]
-  if (sightings_.empty() || (!calls_.empty() && t - calls_.back().t < carried)) return;
-  ++report_.seen;
-  const TeamWorld team = bench_.at(t);
-  if (!team.ball) return;
-  ++report_.known;
-  const FieldPoint off = team.ball->position.mean - world_.state().ball.at;
-  report_.team_errors.push_back(norm(off));
-  report_.best_errors.push_back(std::ranges::min_element(sightings_, {}, &Sighting::variance)->error);
-  const Eigen::Vector2d e(off.x, off.y);
-  report_.nees.push_back(e.dot(team.ball->position.covariance.inverse() * e));
+  if (std::ranges::none_of(seats_, [](const auto& seat) { return seat.second.sees_ball; }) || t - called_at_ < carried)
+    return;
+  const auto note = [&](BallKnowledge& knowledge, const std::optional<TeamBall>& ball) {
+    ++knowledge.moments;
+    if (!ball) return;
+    ++knowledge.known;
+    const FieldPoint off = ball->position.mean - world_.state().ball.at;
+    const Eigen::Vector2d e(off.x, off.y);
+    knowledge.errors.add(norm(off));
+    knowledge.squared.add(e.dot(ball->position.covariance.inverse() * e));
+  };
+  std::optional<TeamBall> surest;
+  for (auto& [id, seat] : seats_) {
+    note(seat.sees_ball ? report_.seeing : report_.blind, seat.fusion.at(t).ball);
+    auto alone = seat.alone.at(t).ball;
+    if (alone && (!surest || alone->position.covariance.trace() < surest->position.covariance.trace()))
+      surest = std::move(alone);
+  }
+  note(report_.surest, surest);
+  for (Bench& bench : benches_) note(*bench.figures, bench.fusion.at(t).ball);
 }
 
 std::vector<std::string> SimMatch::news() {

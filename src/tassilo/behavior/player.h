@@ -24,8 +24,8 @@ struct PlayerOptions {
   double max_speed = 1;            ///< Of a wheel. [m/s], > 0
   double acceleration = 1.5;       ///< That its wheels surely reach, also when they brake. [m/s^2], > 0
   double max_turn_rate = 2.5;      ///< Pictures still tell something while it turns so fast. [rad/s], > 0
-  double dribble_turn_rate = 0.9;  ///< The ball stays before a robot that turns no faster. [rad/s], > 0
-  double dribble_speed = 0.8;      ///< [m/s], > 0
+  double dribble_turn_rate = 1.2;  ///< The ball stays before a robot that turns no faster. [rad/s], > 0
+  double dribble_speed = 1;        ///< [m/s], > 0
   double kick_reach = 0.05;        ///< A kick reaches the ball over such a gap. [m], >= 0
   double kick_deg = 20;            ///< The ball is before the robot when no further from ahead. [deg], > 0
   double ball_friction = 0.4;      ///< Of a rolling ball. [m/s^2], > 0

@@ -134,12 +134,6 @@ Deed with_ball(const Play& play, FloorPoint ball, FloorPoint goal) {
   });
   if (is_before && is_on_target(play, ball) && (is_near || is_pressed) && (room > 0 || held > 2.5))
     return {{options.dribble_speed, 0, {}}, true, "shoot", "ball to the goal"};
-  // Before it is lost in a fight: somewhere ahead, where mates come sooner than through a crowd.
-  const double room_ahead = room_of_shot(now, ball, ball + FloorPoint{0.2 * play.input.field->length, 0});
-  if (is_before && is_pressed && now.pose && std::abs(bearing(goal)) < radians(75) && room_ahead > 0 &&
-      to_goal > 0.25 * play.input.field->length)
-    return {{options.dribble_speed, 0, {}}, true, "clear", "ball away from the others"};
-
   const DriveWish wish{
       .speed = options.dribble_speed, .turn_rate = options.dribble_turn_rate, .margin = 0.2, .stops = false};
   Motion motion = drive_to(now, goal, wish, play.state.way, options);
@@ -164,7 +158,7 @@ Deed to_ball(const Play& play, FloorPoint ball, FloorPoint goal) {
   const double off = wrap_angle(bearing(ball) - push), away = norm(ball);
   if (std::abs(off) < radians(35)) {
     // Along the line behind the ball, which it meets the sooner the further off it is.
-    const FloorPoint place = ball - std::max(0.5 * (away - touch), 0.) * unit(push);
+    const FloorPoint place = ball - std::max(0.8 * (away - touch), 0.) * unit(push);
     const DriveWish wish{.speed = options.max_speed, .turn_rate = options.max_turn_rate, .margin = 0.1, .stops = false};
     Motion motion = drive_to(now, place, wish, play.state.way, options);
     if (away < 2 * touch) motion.speed = std::min(motion.speed, options.dribble_speed);

@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
 # The shipped recording from start to end: train colors from samples, run the vision, measure it against the truth.
-# usage: tools/demo.sh [PROGRAM] [OUTPUT_FOLDER]      after `make release`; `make demo` does both
+# usage: tools/recording.sh [PROGRAM] [OUTPUT_FOLDER]      after `make release`; `make recording` does both
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 program=${1:-build/release/bin/tassilo}
-out=${2:-out/demo}
+out=${2:-out/recording}
 recording=data/msl98/d01_approach
 
 if [ ! -x "$program" ]; then
-  echo "demo: $program is not built; 'make demo' builds and runs it" >&2
+  echo "recording: $program is not built; 'make recording' builds and runs it" >&2
   exit 1
 fi
 say() { printf '\n== %s\n' "$*"; }
