@@ -5,6 +5,7 @@ usage: tests/monitor_test.py PROGRAM TEAM_TRAFFIC [unittest arguments]
 """
 import http.client
 import json
+import math
 import re
 import signal
 import subprocess
@@ -89,6 +90,20 @@ class Watched(ProgramTest):
         self.assertEqual((self.process.returncode, err), (0, ""), out)
         return out
 
+    def knows_what_is_true(self, picture, robots):
+        """The ball that all robots of team_traffic see, and their only opponent, where that program puts them."""
+        t, ball, opponents = picture["t"], picture["team_ball"], picture["opponents"]
+        off = math.hypot(ball["x"] - 1.5 * math.cos(.3 * t), ball["y"] - .8 * math.sin(.5 * t))
+        self.assertLess(off, .2, picture["team_ball"])
+        self.assertLess(ball["age"], 1)
+        self.assertLessEqual(set(ball["robots"]), robots)
+        self.assertGreaterEqual(len(ball["robots"]), 2)
+        self.assertEqual(len(ball["cov"]), 16)
+        # Nobody alone knows it better than his pose: 0.1 m and 0.045 rad.
+        self.assertLess(math.sqrt(ball["cov"][0] + ball["cov"][5]), .15)
+        self.assertEqual([one["team"] for one in opponents], ["magenta"])
+        self.assertLess(math.hypot(opponents[0]["x"] + 1, opponents[0]["y"] - .5), .2)
+
     def news(self):
         return [(one["robot"], one["text"]) for one in self.ask("/api/monitor/news")]
 
@@ -120,6 +135,7 @@ class Monitor(Watched):
         channel.close()
         self.assertEqual(times, sorted(times))
         self.assertEqual(picture["counts"]["refused"], 0)
+        self.knows_what_is_true(picture, set(robots))
         # Looking back: what was, and where everybody came from.
         monitor = self.ask("/api/monitor")
         self.assertEqual(monitor["mode"], "live")
@@ -128,6 +144,7 @@ class Monitor(Watched):
         then = self.picture(middle)
         self.assertLessEqual(then["t"], middle)
         self.assertLess(middle - then["t"], 1)
+        self.knows_what_is_true(then, set(robots))
         trails = self.ask(f"/api/monitor/trails?t={monitor['end']}&seconds=2")["robots"]
         self.assertEqual({trail["id"] for trail in trails}, set(range(1, 11)))
         for trail in trails:
@@ -162,6 +179,7 @@ class Monitor(Watched):
         goes.wait()
         self.wait_for("silence", lambda: {self.robots()[robot]["presence"] for robot in (2, 3)} == {"gone"})
         self.assertEqual(self.robots()[1]["presence"], "here")
+        self.assertEqual(self.picture()["team_ball"]["robots"], [1])
         self.assertIn((2, "is gone: silent for 5 s"), self.news())
         self.talk("2", "--clock-ahead", -3600)
         robot = self.wait_for("the robot again", lambda: (r := self.robots()[2])["presence"] == "here" and r["scene"]["balls"] and r)
@@ -192,6 +210,7 @@ class Monitor(Watched):
         self.wait_for("the other one", lambda: self.robots().get(1, {}).get("scene", {}).get("balls"))
         self.wait_for("more garbage", lambda: self.picture()["counts"]["refused"] > 100)
         self.assertFalse(self.robots()[2]["scene"]["balls"])
+        self.assertEqual(self.picture()["team_ball"]["robots"], [1])
         self.assertRegex(self.end(), r"[1-9]\d* refused")
 
     def test_strangers_are_not_believed_when_the_team_is_known(self):
@@ -220,7 +239,10 @@ class Monitor(Watched):
         self.assertLessEqual(set(news), {(one["number"], one["t"], one["text"]) for one in self.ask("/api/monitor/news")})
         for picture in (first, last, self.picture(monitor["begin"] + 1)):
             self.assertEqual([robot["id"] for robot in picture["robots"]], [1, 2, 3])
-        self.assertEqual(first["robots"], self.picture(monitor["begin"] + 1)["robots"])
+            self.knows_what_is_true(picture, {1, 2, 3})
+        again = self.picture(monitor["begin"] + 1)
+        for what in ("robots", "team_ball", "opponents"):
+            self.assertEqual(first[what], again[what])
         self.assertNotEqual(first["robots"][0]["scene"]["pose"]["x"], last["robots"][0]["scene"]["pose"]["x"])
         self.ask(f"/api/monitor/picture?t={monitor['end']}&robot=1", 404)
         self.ask(f"/api/monitor/picture?t={monitor['end']}&robot=1.5", 400)

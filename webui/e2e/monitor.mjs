@@ -196,6 +196,16 @@ async function main(url, browser, screenshots, { robots: wanted, "least-rate": l
     assert.deepEqual(listed, without);
   });
 
+  await step("who sees the team's ball is said, and it is drawn where they know it", async () => {
+    const known = async () => (await shown_picture()).team_ball;
+    await until("the team knows its ball", async () => (await known()) !== undefined);
+    await until("it is said", async () => /^seen by \d.*\sago · ±/.test((await show("team-ball").innerText()).trim()));
+    const words = (await show("team-ball").innerText()).match(/^seen by ([\d, ]+)/)[1].split(",").map(Number);
+    const ids = (await shown_picture()).robots.map(({ id }) => id);
+    assert.ok(words.every((id) => ids.includes(id)), `${words} of ${ids}`);
+    assert.match(await show("opponents").innerText(), /opponent/);
+  });
+
   await step("paused, nothing moves; layers go and come back, and are remembered", async () => {
     await show("play").click();
     await until("it says so", async () => /looking back, paused/.test(await condition()));

@@ -194,10 +194,22 @@ function news_until(t) {
   return news.sort((a, b) => a.t - b.t).filter((item) => item.t <= t).map((item, i) => ({ number: i + 1, ...item }));
 }
 
+/// What all know together: those see it who know where they are; robot 5 is no teammate to anybody, because it does not.
+function team_at(robots, t) {
+  const seers = robots.filter(({ presence, scene }) => presence === "here" && scene.balls.length > 0 && scene.pose !== null && !scene.pose.mirror).map(({ id }) => id);
+  const velocity = (now, before) => ({ x: rounded(now.x), y: rounded(now.y), vx: rounded((now.x - before.x) * 10), vy: rounded((now.y - before.y) * 10) });
+  const thing = (sigma) => ({ cov: Array.from({ length: 16 }, (_, i) => (i % 5 === 0 ? sigma ** 2 : 0)), age: 0.02, robots: seers });
+  const sigma = 0.12 / Math.sqrt(Math.max(seers.length, 1));
+  return {
+    ...(seers.length > 0 && { team_ball: { ...velocity(ball_at(t), ball_at(t - 0.1)), ...thing(sigma) } }),
+    opponents: ids.includes(5) ? [{ id: 1, team: "cyan", ...velocity(place(5, t), place(5, t - 0.1)), ...thing(0.1) }] : [],
+  };
+}
+
 function picture_at(t) {
   const robots = ids.filter((id) => t - last_heard(id, t) < 60).map((id) => robot_at(id, t));
   return {
-    t, robots, troubles: ids.includes(7) ? ["robot 7: 31 % of its messages do not come here"] : [], news: news_until(t).length,
+    t, robots, ...team_at(robots, t), troubles: ids.includes(7) ? ["robot 7: 31 % of its messages do not come here"] : [], news: news_until(t).length,
     counts: { heard: Math.round((t - start) * 290), refused: Math.floor((t - start) / 3), late: 12, repeated: 3, bytes_per_second: robots.reduce((sum, robot) => sum + robot.bytes_per_second, 0) },
   };
 }

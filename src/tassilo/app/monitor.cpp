@@ -86,6 +86,13 @@ WebResponse nothing_at(const WebRequest& request) {
   return refusal(404, "there is nothing at " + request.path);
 }
 
+/// Robots of this field in full view are so wide.
+TeamFusionOptions fusion_on(const FieldModel& field) {
+  TeamFusionOptions options;
+  if (field.robots.width.middle() > 0) options.robot_width = field.robots.width.middle();
+  return options;
+}
+
 /// "robot 3's sender": those of one participant are one sender.
 std::string sender_of(const BusId& writer) { return to_string(writer).substr(0, 24); }
 
@@ -101,6 +108,7 @@ LiveMonitor::LiveMonitor(const MonitorOptions& options)
     : options_(options),
       bus_(options.bus),
       view_(options.view),
+      bench_(fusion_on(options.field)),
       history_(options.memory_s, static_cast<std::size_t>(options.memory_s) * kMemory),
       trails_(options.memory_s),
       server_(with_channels(options.web, true), [this](const WebRequest& request) { return answer(request); }) {
@@ -207,7 +215,9 @@ void LiveMonitor::listen(double now) {
       // On the even clock: how long ago it came does not change when the machine's clock is set.
       const double ago = wall - 1e-9 * static_cast<double>(one.sample.arrival_ns);
       const double arrival = now - std::clamp(ago, 0., longest_wait);
-      view_.hear({one.ear->topic, sender_of(one.sample.writer), arrival, one.sample.data});
+      const std::string sender = sender_of(one.sample.writer);
+      const Heard heard{one.ear->topic, sender, arrival, one.sample.data};
+      if (const auto believed = view_.hear(heard)) bench_.hear(heard, *believed);
     }
     record(one.sample, *one.ear);
   }
@@ -231,8 +241,8 @@ void LiveMonitor::publish(double now) {
   std::erase_if(bus_troubles_, [&](const Trouble& trouble) { return now - trouble.t > lasts; });
   for (const Trouble& trouble : bus_troubles_) picture.troubles.push_back(trouble.text);
   if (!record_trouble_.empty()) picture.troubles.push_back("no longer recorded: " + record_trouble_);
-  const auto text = std::make_shared<const std::string>(
-      team_picture_json(picture, view_.news().empty() ? 0 : view_.news().back().number, with_pictures_));
+  const auto text = std::make_shared<const std::string>(team_picture_json(
+      picture, bench_.at(now), view_.news().empty() ? 0 : view_.news().back().number, with_pictures_));
   if (is_kept) {
     kept_at_ = now;
     history_.add(now, text);
@@ -314,7 +324,7 @@ WebResponse LiveMonitor::answer(const WebRequest& request) {
 LogMonitor::LogMonitor(const MonitorOptions& options, const std::string& log)
     : options_(options),
       name_(log),
-      log_(log, options.view),
+      log_(log, options.view, fusion_on(options.field)),
       server_(with_channels(options.web, false), [this](const WebRequest& request) { return answer(request); }) {}
 
 void LogMonitor::run(const std::function<bool()>& is_over) {
@@ -330,7 +340,7 @@ WebResponse LogMonitor::answer(const WebRequest& request) {
     if (!t) return needs("t");
     const TeamPicture picture = log_.at(*t);
     const std::vector<TeamNews> news = log_.news();
-    return ok(team_picture_json(picture, news.empty() ? 0 : news.back().number, log_.with_pictures()));
+    return ok(team_picture_json(picture, log_.world(), news.empty() ? 0 : news.back().number, log_.with_pictures()));
   }
   if (request.path == "/api/monitor/trails") {
     const auto seconds = trail_seconds(request);

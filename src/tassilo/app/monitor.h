@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tassilo/app/bus_complaints.h"
+#include "tassilo/app/team_bench.h"
 #include "tassilo/app/team_history.h"
 #include "tassilo/app/team_log.h"
 #include "tassilo/app/team_trails.h"
@@ -92,6 +93,7 @@ class LiveMonitor {
 
   mutable std::mutex mutex_;  ///< Guards all down to the server.
   TeamView view_;
+  TeamBench bench_;
   TeamHistory history_;
   TeamTrails trails_;
   double kept_at_ = 0;

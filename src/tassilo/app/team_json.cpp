@@ -117,6 +117,27 @@ json json_of(const TrackSeen& track) {
           {"age", seconds(track.age)}};
 }
 
+json json_of(const TeamThing& thing) {
+  json covariance = json::array();  // symmetric: its order is row-major as well
+  for (const double value : thing.covariance.reshaped()) covariance.push_back(variance(value));
+  json robots = json::array();
+  for (const int robot : thing.robots) robots.push_back(robot);
+  return {{"x", meters(thing.position.mean.x)},
+          {"y", meters(thing.position.mean.y)},
+          {"vx", meters(thing.vx)},
+          {"vy", meters(thing.vy)},
+          {"cov", std::move(covariance)},
+          {"age", seconds(thing.age)},
+          {"robots", std::move(robots)}};
+}
+
+json json_of(const TeamOpponent& opponent) {
+  json out = json_of(static_cast<const TeamThing&>(opponent));
+  out["id"] = opponent.id;
+  out["team"] = to_string(opponent.team);
+  return out;
+}
+
 template <class List>
 json list_of(const List& values) {
   json list = json::array();
@@ -166,20 +187,24 @@ std::string dumped(const json& value) { return value.dump(-1, ' ', false, json::
 
 }  // namespace
 
-std::string team_picture_json(const TeamPicture& picture, std::int64_t news, std::span<const int> with_pictures) {
+std::string team_picture_json(const TeamPicture& picture, const TeamWorld& world, std::int64_t news,
+                              std::span<const int> with_pictures) {
   json robots = json::array();
   for (const TeamMember& member : picture.members)
     robots.push_back(json_of(member, std::ranges::binary_search(with_pictures, member.id)));
-  return dumped({{"t", seconds(picture.t)},
-                 {"robots", std::move(robots)},
-                 {"troubles", picture.troubles},
-                 {"news", news},
-                 {"counts",
-                  {{"heard", picture.counts.heard},
-                   {"refused", picture.counts.refused},
-                   {"late", picture.counts.late},
-                   {"repeated", picture.counts.repeated},
-                   {"bytes_per_second", std::round(picture.counts.bytes_per_second)}}}});
+  json out{{"t", seconds(picture.t)},
+           {"robots", std::move(robots)},
+           {"opponents", list_of(world.opponents)},
+           {"troubles", picture.troubles},
+           {"news", news},
+           {"counts",
+            {{"heard", picture.counts.heard},
+             {"refused", picture.counts.refused},
+             {"late", picture.counts.late},
+             {"repeated", picture.counts.repeated},
+             {"bytes_per_second", std::round(picture.counts.bytes_per_second)}}}};
+  if (world.ball) out["team_ball"] = json_of(static_cast<const TeamThing&>(*world.ball));
+  return dumped(out);
 }
 
 std::string team_news_json(std::span<const TeamNews> news) {

@@ -24,13 +24,15 @@ std::string sender_of(const McapChannel& channel) {
 
 }  // namespace
 
-TeamLog::TeamLog(const std::filesystem::path& file, const TeamViewOptions& options)
+TeamLog::TeamLog(const std::filesystem::path& file, const TeamViewOptions& options, const TeamFusionOptions& fusion)
     : reader_(file),
       picture_reader_(file),
       options_(options),
+      fusion_options_(fusion),
       begin_(seconds(reader_.begin_ns())),
       end_(seconds(reader_.end_ns())),
       view_(options),
+      bench_(fusion),
       trails_(2 * kLookBack) {
   bool has_robots = false;
   for (const auto& [number, channel] : reader_.channels()) {
@@ -44,6 +46,7 @@ TeamLog::TeamLog(const std::filesystem::path& file, const TeamViewOptions& optio
 
 void TeamLog::begin_before(double t) {
   view_ = TeamView(options_);
+  bench_ = TeamBench(fusion_options_);
   trails_.clear();
   ahead_.reset();
   // In whole nanoseconds: the first message is not passed over for the last digit of its time.
@@ -67,8 +70,11 @@ TeamPicture TeamLog::at(double t) {
     const double arrival = seconds(ahead_->log_time_ns);
     for (; next_step < arrival; next_step += kTrailStep) trails_.add(view_.picture(next_step));
     const McapChannel& channel = reader_.channels().at(ahead_->channel);
-    if (channel.message_encoding == "cdr" && robot_topic_from(channel.topic).robot >= 0)
-      view_.hear({channel.topic, sender_of(channel), arrival, ahead_data_});
+    if (channel.message_encoding == "cdr" && robot_topic_from(channel.topic).robot >= 0) {
+      const std::string sender = sender_of(channel);
+      const Heard heard{channel.topic, sender, arrival, ahead_data_};
+      if (const auto believed = view_.hear(heard)) bench_.hear(heard, *believed);
+    }
     ahead_.reset();
   }
   now_ = t;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tassilo/app/team_bench.h"
 #include "tassilo/app/team_trails.h"
 #include "tassilo/record/mcap_reader.h"
 #include "tassilo/team/team_view.h"
@@ -20,7 +21,7 @@ namespace tassilo {
 class TeamLog {
  public:
   /// Throws Error when the file is no log, or has no topic of a robot.
-  TeamLog(const std::filesystem::path& file, const TeamViewOptions& options);
+  TeamLog(const std::filesystem::path& file, const TeamViewOptions& options, const TeamFusionOptions& fusion);
 
   double begin() const { return begin_; }  ///< Of its first and last message. [s since the UNIX epoch]
   double end() const { return end_; }
@@ -31,6 +32,8 @@ class TeamLog {
 
   /// At most as many messages are read as lie in ten seconds of the log. Throws Error when it cannot be read any more.
   TeamPicture at(double t);
+  /// What the team knew together where it is, of which `at` told last.
+  TeamWorld world() { return bench_.at(now_.value_or(begin_)); }
   /// Where robots were in the seconds before `t`, as far as ten seconds back.
   std::vector<TeamTrail> trails(double t, double seconds);
   /// The newest annotated picture, a JPEG, of the two seconds before t; nothing when there is none.
@@ -44,9 +47,11 @@ class TeamLog {
 
   McapReader reader_, picture_reader_;  ///< Each goes through the log at its own place.
   TeamViewOptions options_;
+  TeamFusionOptions fusion_options_;
   double begin_ = 0, end_ = 0;
   std::vector<int> with_pictures_;
   TeamView view_;
+  TeamBench bench_;
   TeamTrails trails_;
   std::optional<double> now_;         ///< All messages up to here have been heard.
   std::optional<McapMessage> ahead_;  ///< The first one after that.

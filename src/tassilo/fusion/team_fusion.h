@@ -65,7 +65,7 @@ struct TeamThing {
   double vx = 0, vy = 0;                                     ///< Over the field. [m/s]
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Identity();  ///< Of x, y, vx, vy.
   double age = 0;                                            ///< Since anybody saw it last. [s]
-  RecycledVector<int> robots;                                ///< Who saw it within max_age, by number.
+  RecycledVector<int> robots;                                ///< Who saw it within max_age, by number; the last ten.
 };
 struct TeamBall : TeamThing {
   double weight = 0;  ///< Confidences of its sightings, fading within a second.

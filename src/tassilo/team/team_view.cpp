@@ -51,27 +51,29 @@ void TeamViewOptions::check() const {
 
 TeamView::TeamView(const TeamViewOptions& options) : options_(options) { options_.check(); }
 
-void TeamView::hear(const Heard& heard) {
+std::optional<Believed> TeamView::hear(const Heard& heard) {
   ++counts_.heard;
   bytes_.add(heard.arrival, static_cast<double>(heard.data.size()));
   const RobotTopic topic = robot_topic_from(heard.topic);
   const bool is_known =
       topic.robot >= 0 && (options_.known_robots.empty() ||
                            std::ranges::find(options_.known_robots, topic.robot) != options_.known_robots.end());
-  if (topic.topic != nullptr && topic.topic->name == kTransformsTopic.name) return;  // of poses that are told, too
+  if (topic.topic != nullptr && topic.topic->name == kTransformsTopic.name)
+    return std::nullopt;  // of poses that are told, too
   if (!is_known) {
     ++counts_.refused;
     if (heard.arrival - stranger_at_ > kTroubleLasts && topic.robot >= 0)
       tell(heard.arrival, topic.robot, "is no robot of the team: not believed");
     stranger_at_ = heard.arrival;
     stranger_ = std::string(heard.topic.substr(0, 100));
-    return;
+    return std::nullopt;
   }
-  if (!hear_of_robot(heard, topic)) ++counts_.refused;
+  const Judgment judgment = hear_of_robot(heard, topic);
+  if (judgment.is_refused) ++counts_.refused;
+  return judgment.believed;
 }
 
-/// False: refused.
-bool TeamView::hear_of_robot(const Heard& heard, const RobotTopic& topic) {
+TeamView::Judgment TeamView::hear_of_robot(const Heard& heard, const RobotTopic& topic) {
   auto found = members_.find(topic.robot);
   if (found == members_.end()) {
     found = members_.emplace(topic.robot, Member{}).first;
@@ -80,18 +82,17 @@ bool TeamView::hear_of_robot(const Heard& heard, const RobotTopic& topic) {
   Member& member = found->second;
   const std::string_view name = topic.topic->name;
   // The scan is the free space once more, and pictures are not kept.
-  if (name == kScanTopic.name || name == kImageTopic.name) return true;
-  bool is_believed = false;
-  if (name == kPoseTopic.name) is_believed = take<ros::PoseWithCovarianceStamped>(member, heard, *topic.topic);
-  if (name == kBallsTopic.name) is_believed = take<msgs::BallArray>(member, heard, *topic.topic);
-  if (name == kGoalsTopic.name) is_believed = take<msgs::GoalArray>(member, heard, *topic.topic);
-  if (name == kRobotsTopic.name) is_believed = take<msgs::RobotArray>(member, heard, *topic.topic);
-  if (name == kLinesTopic.name) is_believed = take<msgs::LineArray>(member, heard, *topic.topic);
-  if (name == kTracksTopic.name) is_believed = take<msgs::TrackArray>(member, heard, *topic.topic);
-  if (name == kFreeSpaceTopic.name) is_believed = take<msgs::FreeSpace>(member, heard, *topic.topic);
-  if (name == kTeamStateTopic.name) is_believed = take<msgs::TeamState>(member, heard, *topic.topic);
-  if (name == kOdometryTopic.name) is_believed = take<ros::Odometry>(member, heard, *topic.topic);
-  return is_believed;
+  if (name == kScanTopic.name || name == kImageTopic.name) return {};
+  if (name == kPoseTopic.name) return take<ros::PoseWithCovarianceStamped>(member, heard, *topic.topic);
+  if (name == kBallsTopic.name) return take<msgs::BallArray>(member, heard, *topic.topic);
+  if (name == kGoalsTopic.name) return take<msgs::GoalArray>(member, heard, *topic.topic);
+  if (name == kRobotsTopic.name) return take<msgs::RobotArray>(member, heard, *topic.topic);
+  if (name == kLinesTopic.name) return take<msgs::LineArray>(member, heard, *topic.topic);
+  if (name == kTracksTopic.name) return take<msgs::TrackArray>(member, heard, *topic.topic);
+  if (name == kFreeSpaceTopic.name) return take<msgs::FreeSpace>(member, heard, *topic.topic);
+  if (name == kTeamStateTopic.name) return take<msgs::TeamState>(member, heard, *topic.topic);
+  if (name == kOdometryTopic.name) return take<ros::Odometry>(member, heard, *topic.topic);
+  return {.is_refused = true};
 }
 
 bool TeamView::is_from_whom_we_believe(Member& member, const Heard& heard) {
@@ -121,12 +122,12 @@ bool TeamView::is_from_whom_we_believe(Member& member, const Heard& heard) {
 }
 
 template <Message M>
-bool TeamView::take(Member& member, const Heard& heard, const Topic& topic) {
+TeamView::Judgment TeamView::take(Member& member, const Heard& heard, const Topic& topic) {
   const std::optional<M> message = decoded<M>(heard.data);
   if (!message) return refuse(member, heard, std::string(topic.name) + ": is no " + topic.ros_type());
   if (const std::string why = implausible(*message, member.told.id); !why.empty())
     return refuse(member, heard, std::string(topic.name) + ": " + why);
-  if (!is_from_whom_we_believe(member, heard)) return false;
+  if (!is_from_whom_we_believe(member, heard)) return {.is_refused = true};
   const ros::Time stamp = message->header.stamp;
   switch (member.clock.judge(seconds_of(stamp), heard.arrival)) {
     case ClockOffset::Verdict::plausible:
@@ -147,16 +148,17 @@ bool TeamView::take(Member& member, const Heard& heard, const Topic& topic) {
   const auto place = std::ranges::lower_bound(stamps, time);
   if (place != stamps.end() && *place == time) {
     ++counts_.repeated;
-    return true;
+    return {};
   }
   ++member.heard;
+  const Judgment believed{.believed = Believed{member.told.id, time, seconds_of(stamp) - *member.clock.ahead()}};
   const bool is_newest = place == stamps.end();
   stamps.insert(place, time);
   if (stamps.size() > kRemembered) stamps.pop_front();
   if (!is_newest) {
     ++counts_.late;
     note_late(member, seconds_of(stamp), heard.arrival);
-    return true;
+    return believed;
   }
   member.late.reset();
   // What is late, or was heard before, is no sign of life: a link may bring it long after.
@@ -164,9 +166,9 @@ bool TeamView::take(Member& member, const Heard& heard, const Topic& topic) {
   member.last_heard = std::max(member.last_heard, heard.arrival);
   of_topic.heard_at = heard.arrival;
   member.told.message_age = member.clock.delay(seconds_of(stamp), heard.arrival);
-  member.told.scene.t = std::max(member.told.scene.t, seconds_of(stamp) - *member.clock.ahead());
+  member.told.scene.t = std::max(member.told.scene.t, believed.believed->t);
   keep(member, *message, heard.arrival);
-  return true;
+  return believed;
 }
 
 /// A clock that was set back by less than messages may be late looks like that: all are older than those before, and as
@@ -245,13 +247,13 @@ void TeamView::keep(Member& member, const msgs::TeamState& message, double arriv
         std::clamp(1 - static_cast<double>(now.heard - then.heard) / static_cast<double>(now.sent - then.sent), 0., 1.);
 }
 
-bool TeamView::refuse(Member& member, const Heard& heard, std::string why) {
+TeamView::Judgment TeamView::refuse(Member& member, const Heard& heard, std::string why) {
   ++member.told.refused;
   if (heard.arrival - member.refused_at > kTroubleLasts)
     tell(heard.arrival, member.told.id, "sends what cannot be believed: " + why);
   member.refused_at = heard.arrival;
   member.refusal = std::move(why);
-  return false;
+  return {.is_refused = true};
 }
 
 void TeamView::tell(double t, int robot, std::string text) {

@@ -28,6 +28,13 @@ struct Heard {
   std::span<const std::byte> data;  ///< CDR.
 };
 
+/// A message that is believed and was not heard before, late or not. Messages of one image have one stamp.
+struct Believed {
+  int robot = 0;
+  std::int64_t stamp = 0;  ///< When its image was captured, on the robot's clock. [ns]
+  double t = 0;            ///< The same on ours, later by what the quickest message of late took. [s]
+};
+
 struct TeamViewOptions {
   double stale_s = 1;                  ///< A robot that is silent for longer is stale. [s], > 0
   double gone_s = 5;                   ///< And gone. [s], > stale_s
@@ -92,8 +99,9 @@ class TeamView {
  public:
   explicit TeamView(const TeamViewOptions& options = {});
 
-  /// Takes a message. O(its size).
-  void hear(const Heard& heard);
+  /// Takes a message. O(its size). Nothing when it is refused, repeated, or not kept by anybody who listens to robots
+  /// (transforms, scans, pictures).
+  std::optional<Believed> hear(const Heard& heard);
   /// What is known at this time, not before the last one. O(what is known).
   TeamPicture picture(double now);
   /// The newest, oldest first; at most kNews.
@@ -132,10 +140,15 @@ class TeamView {
     std::optional<Late> late;  ///< Those in a row that were older than the newest.
   };
 
-  bool hear_of_robot(const Heard& heard, const RobotTopic& topic);
+  struct Judgment {
+    bool is_refused = false;
+    std::optional<Believed> believed = {};
+  };
+
+  Judgment hear_of_robot(const Heard& heard, const RobotTopic& topic);
   bool is_from_whom_we_believe(Member& member, const Heard& heard);
   template <Message M>
-  bool take(Member& member, const Heard& heard, const Topic& topic);
+  Judgment take(Member& member, const Heard& heard, const Topic& topic);
   void keep(Member& member, const ros::PoseWithCovarianceStamped& message, double arrival);
   void keep(Member& member, const msgs::BallArray& message, double arrival);
   void keep(Member& member, const msgs::GoalArray& message, double arrival);
@@ -147,7 +160,7 @@ class TeamView {
   void keep(Member& member, const ros::Odometry& message, double arrival);
   void note_late(Member& member, double stamp, double arrival);
   void forget_times(Member& member, double arrival);
-  bool refuse(Member& member, const Heard& heard, std::string why);
+  Judgment refuse(Member& member, const Heard& heard, std::string why);
   void tell(double t, int robot, std::string text);
   void watch(int id, Member& member, double now);
   TeamMember described(const Member& member, double now) const;

@@ -248,6 +248,33 @@ TEST(TeamView, WhatIsLateOrRepeatedIsNoSignOfLife) {
   EXPECT_EQ(view.picture(kStart + 2.6).members[0].presence, Presence::stale);
 }
 
+TEST(TeamView, TellsOfWhichImageAMessageIsUnlessItIsRefusedOrRepeated) {
+  TeamView view;
+  const auto judged = [&](const Packet& packet) {
+    return view.hear({packet.topic, packet.sender, packet.arrival, packet.data});
+  };
+  constexpr double ahead = 600;
+  std::vector<std::vector<Packet>> images;
+  for (int i = 0; i < 3; ++i) images.push_back(packets_of(3, kStart + 0.1 * i, "a", ahead));
+  const auto first = judged(images[0][0]), newest = judged(images[2][0]);
+  ASSERT_TRUE(first && newest);
+  EXPECT_EQ(first->robot, 3);
+  EXPECT_NEAR(first->t, kStart, 1e-3) << "on our clock";
+  EXPECT_NEAR(1e-9 * static_cast<double>(newest->stamp - first->stamp), 0.2, 1e-6);
+  images[1][0].arrival = kStart + 0.5;
+  const auto late = judged(images[1][0]);
+  ASSERT_TRUE(late);
+  EXPECT_NEAR(late->t, kStart + 0.1, 1e-3);
+  const auto of_the_same = judged(images[2][1]);
+  ASSERT_TRUE(of_the_same);
+  EXPECT_EQ(of_the_same->stamp, newest->stamp);
+  EXPECT_FALSE(judged(images[1][0])) << "repeated";
+  images[2][2].sender = "b";
+  EXPECT_FALSE(judged(images[2][2])) << "of another sender";
+  images[2][2].data.resize(20);
+  EXPECT_FALSE(judged(images[2][2])) << "no message";
+}
+
 TEST(TeamView, AStateTellsMoreOfEachPose) {
   TeamView view;
   const std::vector<Packet> first = packets_of(3, kStart, "a");

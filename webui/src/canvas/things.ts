@@ -120,7 +120,7 @@ function draw_track(pen: Pen, track: Track, uncertainty: boolean, sizes: Sizes):
 }
 
 /// A velocity within its own uncertainty points anywhere; an arrow would claim a direction that nobody knows.
-export function is_moving(track: Track): boolean {
+export function is_moving(track: Pick<Track, "vx" | "vy" | "cov">): boolean {
   const variance = (track.cov[10] ?? Infinity) + (track.cov[15] ?? Infinity);
   return Math.hypot(track.vx, track.vy) > shown_sigmas * Math.sqrt(variance);
 }

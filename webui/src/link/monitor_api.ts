@@ -50,9 +50,29 @@ export interface TeamRobot {
   troubles: string[];
 }
 
+/// What the robots know together, in the field frame at the picture's time.
+export interface TeamThing {
+  x: number;
+  y: number;
+  vx: number;
+  vy: number;
+  /// Row-major x, y, vx, vy.
+  cov: number[];
+  age: number;
+  /// Who saw it of late.
+  robots: number[];
+}
+export interface TeamOpponent extends TeamThing {
+  id: number;
+  team: Team;
+}
+
 export interface TeamPicture {
   t: number;
   robots: TeamRobot[];
+  /// Missing while nobody knows where it is.
+  team_ball?: TeamThing;
+  opponents: TeamOpponent[];
   troubles: string[];
   news: number;
   counts: { heard: number; refused: number; late: number; repeated: number; bytes_per_second: number };

@@ -9,7 +9,7 @@ import { canvas_from_camera, type FieldCamera, panned, zoomed } from "./field_ca
 import { draw_team, type FieldContent, robot_at, team_area } from "./field_drawing";
 import { all_layers, layers_from, usual_layers } from "./layers";
 import { measure_words, measured } from "./measuring";
-import { pose, robot, team_picture } from "./testing";
+import { pose, robot, team_ball, team_picture, team_thing } from "./testing";
 import { Trails } from "./trails";
 import { share_within, usual_share } from "./windows";
 
@@ -41,12 +41,14 @@ describe.each(fields)("the field window on a field: %s", (_, field) => {
   const robots = [full_robot(1), full_robot(2, { presence: "stale", age: 2 }), full_robot(3, { presence: "gone", age: 20, team: "unknown" }), robot(4, {}, null), full_robot(255, { team: "magenta" })];
   robots[0]!.scene.pose!.mirror = true;
   const everything = Object.fromEntries(all_layers.map(({ key }) => [key, true])) as FieldContent["layers"];
+  const together = { team_ball: { ...team_ball(0.5, 0.2), vx: 1, age: 0.5 }, opponents: [{ ...team_thing(-1, 0), id: 3, team: "magenta" as const }, { ...team_thing(0, 1), id: 4, team: "unknown" as const, cov: [] }] };
+  const full_picture = { ...team_picture(10, robots), ...together };
   const trails = new Trails();
   for (let t = 9; t < 10; t += 0.1) trails.add(team_picture(t, robots));
 
   test("only finite numbers and colors of the palette reach the canvas, and it is left as it was", () => {
     const { context, calls } = recorder();
-    draw_team(context, size, palette, 2, content({ picture: team_picture(10, robots), plan: field, layers: everything, trails, selected: 2, measure: { from: [0, 0], to: [0, 0] } }));
+    draw_team(context, size, palette, 2, content({ picture: full_picture, plan: field, layers: everything, trails, selected: 2, measure: { from: [0, 0], to: [0, 0] } }));
     for (const [name, ...values] of calls) {
       for (const value of values) if (typeof value === "number") expect(value, name).toSatisfy(Number.isFinite);
       if (name === "fillStyle" || name === "strokeStyle") expect(Object.values(palette)).toContain(values[0]);
@@ -61,7 +63,7 @@ describe.each(fields)("the field window on a field: %s", (_, field) => {
   test("every layer changes something, and is the only one that does", () => {
     const drawn = (layers: FieldContent["layers"]): string => {
       const { context, calls } = recorder();
-      draw_team(context, size, palette, 1, content({ picture: team_picture(10, robots), plan: field, layers, trails }));
+      draw_team(context, size, palette, 1, content({ picture: full_picture, plan: field, layers, trails }));
       return JSON.stringify(calls);
     };
     const all = drawn(everything);
@@ -81,6 +83,52 @@ describe.each(fields)("the field window on a field: %s", (_, field) => {
       const far: Point = [Math.max(a[0], b[0]) + 100, a[1]];
       expect(robot_at(shown, far, size, 1)).toBe(null);
     }
+  });
+});
+
+describe("the team's ball and opponents", () => {
+  const drawn = (of: Partial<FieldContent["picture"] & object>, layers = usual_layers) => {
+    const { context, calls } = recorder();
+    const shown = content({ picture: { ...team_picture(10, []), ...of }, layers });
+    draw_team(context, size, palette, 1, shown);
+    return { calls, place: (at: Point) => apply(canvas_from_camera(null, team_area(shown), size), at) };
+  };
+  /// Discs and rings around a point, with how they were painted.
+  const rounds = ({ calls, place }: ReturnType<typeof drawn>, at: Point) => {
+    const [x, y] = place(at);
+    return calls.flatMap(([name, ...values], i) => {
+      if (name !== "arc" || Math.hypot(Number(values[0]) - x, Number(values[1]) - y) > 1e-6) return [];
+      const until = calls.findIndex(([later], j) => j > i && (later === "fill" || later === "stroke"));
+      const last = (what: string) => calls.slice(0, until).filter(([name]) => name === what).pop()?.[1];
+      return [{ how: calls[until]![0], color: last(calls[until]![0] === "fill" ? "fillStyle" : "strokeStyle"), alpha: Number(last("globalAlpha")) }];
+    });
+  };
+
+  test("a filled ball where the team knows it, an outline where an opponent is, nothing where nobody knows", () => {
+    const shown = drawn({ team_ball: team_ball(1, -0.5), opponents: [{ ...team_thing(-1, 1), id: 1, team: "magenta" }] });
+    expect(rounds(shown, [1, -0.5])).toContainEqual({ how: "fill", color: palette.ball, alpha: 1 });
+    expect(rounds(shown, [-1, 1])).toContainEqual({ how: "stroke", color: palette.magenta, alpha: 1 });
+    expect(rounds(shown, [-1, 1])).not.toContainEqual(expect.objectContaining({ how: "fill", color: palette.magenta }));
+    expect(rounds(drawn({}), [1, -0.5])).toEqual([]);
+  });
+  test("the older, the fainter, but never gone while it is told", () => {
+    const alphas = [0, 0.5, 1, 1.5, 2, 5].map((age) => Math.max(...rounds(drawn({ team_ball: { ...team_ball(1, 1), age } }), [1, 1]).map(({ alpha }) => alpha)));
+    expect(alphas).toEqual([...alphas].sort((a, b) => b - a));
+    expect(alphas[0]).toBe(1);
+    expect(alphas[2]).toBeLessThan(alphas[0]!);
+    expect(alphas[5]).toBeGreaterThan(0.2);
+  });
+  test("its ellipse holds nine of ten", () => {
+    const sigma = 0.4;
+    const cov = Array.from({ length: 16 }, (_, i) => (i % 5 === 0 ? sigma ** 2 : 0));
+    const shown = drawn({ team_ball: { ...team_ball(1, 1), cov } });
+    const without = drawn({ team_ball: { ...team_ball(1, 1), cov } }, { ...usual_layers, uncertainty: false });
+    expect(without.calls.length).toBeLessThan(shown.calls.length);
+    const [x, y] = shown.place([1, 1]);
+    const unit = shown.place([2, 1])[0] - x;
+    // Of a round Gaussian, 1 - exp(-r^2 / 2) lie within r.
+    const radii = shown.calls.filter(([name]) => name === "lineTo").map(([, u, v]) => Math.hypot(Number(u) - x, Number(v) - y) / unit / sigma);
+    expect(radii.filter((r) => Math.abs(1 - Math.exp((-r * r) / 2) - 0.9) < 1e-6).length).toBeGreaterThanOrEqual(47);
   });
 });
 

@@ -1,11 +1,11 @@
 import { area_around, draw_axes, draw_plan, plan_area } from "../canvas/plan";
-import { covariance_ellipse } from "../canvas/ellipse";
+import { covariance_ellipse, ellipse_points } from "../canvas/ellipse";
 import { free_polygons } from "../canvas/free_space";
 import { type Canvas2D, type Palette, Pen } from "../canvas/pen";
-import { draw_balls, draw_goals, draw_lines, draw_mirrored, draw_robots, draw_tracks, place_of, shown_sigmas, sizes_of, team_color } from "../canvas/things";
+import { draw_balls, draw_goals, draw_lines, draw_mirrored, draw_robots, draw_tracks, is_moving, place_of, shown_sigmas, sizes_of, team_color } from "../canvas/things";
 import { type Affine, apply, type Area, compose, from_pose, scale_of, type Size } from "../canvas/transform";
 import type { FieldPlan } from "../link/api";
-import type { TeamPicture, TeamRobot } from "../link/monitor_api";
+import type { TeamOpponent, TeamPicture, TeamRobot, TeamThing } from "../link/monitor_api";
 import type { Point, Pose } from "../scene";
 import { canvas_from_camera, type FieldCamera } from "./field_camera";
 import type { Layers } from "./layers";
@@ -31,6 +31,13 @@ const has_place = (robot: TeamRobot): robot is Placed => robot.scene.pose !== nu
 /// Robots are never smaller on the screen, [px of the page], and where nobody tells their size not out of proportion to a small field.
 const least_radius_px = 10;
 const largest_share_of_field = 0.027;
+
+/// Half axes of the ellipse that holds nine of ten, in standard deviations: of the team's ball, which is one answer and no sighting.
+const nine_of_ten = Math.sqrt(-2 * Math.log(0.1));
+
+/// What the team has not seen for so long is hardly drawn, [s]; the server forgets it then.
+const team_memory = 2;
+const least_opacity = 0.25;
 
 /// So much of a robot is left that was not heard for a while.
 const stale_opacity = 0.45;
@@ -84,10 +91,13 @@ export function draw_team(context: Canvas2D, size: Size, palette: Palette, densi
       for (const { robot, in_robot } of seen) draw_balls(in_robot, robot.scene, details);
     }
     if (layers.tracks) for (const { robot, in_robot } of seen) draw_tracks(in_robot, robot.scene, details);
+    const radius = disc_radius(plan, canvas, density);
+    if (layers.team) for (const opponent of picture.opponents) draw_opponent(pen, opponent, radius, layers.uncertainty);
     // Where it may be as well lies below where others are.
     for (const robot of robots) draw_doubt(pen, robot, layers.uncertainty);
-    const radius = disc_radius(plan, canvas, density);
     for (const { robot, in_robot } of seen) draw_member(pen, in_robot, robot, radius, robot.id === selected);
+    // The one thing all play for lies above all.
+    if (layers.team && picture.team_ball !== undefined) draw_team_ball(pen, picture.team_ball, details.sizes.ball_radius, layers.uncertainty);
   }
   if (measure !== null) draw_measure(pen, measure);
 }
@@ -153,6 +163,39 @@ function draw_member(pen: Pen, in_robot: Pen, robot: Placed, radius: number, is_
   if (is_selected) pen.ring(at, 1.15 * r, px + 3, pen.palette.self, 2.5);
   pen.inscribe(String(robot.id), at, robot.presence === "here" ? pen.palette.ground : pen.palette.text, (robot.id < 100 ? 1.2 : 0.9) * px);
   if (robot.presence !== "here") pen.label(`${robot.presence} ${duration_words(robot.age)}`, at, pen.palette.text, [px + 7, 0]);
+}
+
+function faded_by_age(pen: Pen, { age }: TeamThing): Pen {
+  return pen.within(pen.transform, Math.min(Math.max(1 - age / team_memory, least_opacity), 1));
+}
+
+/// An outline as large as a robot's disc, with a cross for its number.
+///
+/// radius  pixels of the canvas
+function draw_opponent(pen: Pen, opponent: TeamOpponent, radius: number, uncertainty: boolean): void {
+  const at: Point = [opponent.x, opponent.y];
+  const color = team_color(opponent.team, pen.palette);
+  const r = radius / scale_of(pen.transform);
+  const faded = faded_by_age(pen, opponent);
+  if (uncertainty) faded.ellipse(covariance_ellipse(at, opponent.cov, nine_of_ten, 4), color, 0.1);
+  faded.disc(at, r, 0, pen.palette.ground);
+  faded.ring(at, r, 0, color, 3);
+  faded.inscribe("×", at, color, (1.5 * radius) / pen.density);
+  if (is_moving(opponent)) faded.arrow(at, [opponent.x + opponent.vx, opponent.y + opponent.vy], color);
+}
+
+/// Filled as a seen ball is, but larger and with a rim, and its way of the next second.
+function draw_team_ball(pen: Pen, ball: TeamThing, radius: number, uncertainty: boolean): void {
+  const at: Point = [ball.x, ball.y];
+  const faded = faded_by_age(pen, ball);
+  const ellipse = uncertainty ? covariance_ellipse(at, ball.cov, nine_of_ten, 4) : null;
+  faded.ellipse(ellipse, pen.palette.ball, 0.3);
+  if (is_moving(ball)) faded.arrow(at, [ball.x + ball.vx, ball.y + ball.vy], pen.palette.text);
+  faded.ring(at, radius, 8, pen.palette.ground, 6);
+  faded.disc(at, radius, 8, pen.palette.ball);
+  faded.ring(at, radius, 8, pen.palette.text, 2);
+  // Many robots know it better than it is large: their ellipse lies within the ball.
+  if (ellipse !== null) faded.outline(ellipse_points(ellipse), pen.palette.text, 1.5);
 }
 
 function draw_measure(pen: Pen, measure: Measure): void {

@@ -10,6 +10,7 @@ import type { MonitorSession } from "./monitor_session";
 import { NewsList } from "./news_list";
 import { PicturePane } from "./picture_pane";
 import { presence_words } from "./columns";
+import { opponents_words, team_ball_words } from "./team_words";
 import { split_off } from "./windows";
 
 /// The field from above with all robots and what they see; beside it the chosen robot's picture, those without a pose, and the news.
@@ -37,6 +38,7 @@ export function FieldWindow({ session, is_alone }: { session: MonitorSession; is
         <FieldCanvas session={session} canvas={canvas} />
         <aside aria-label="Beside the field">
           {selected !== null && <PicturePane session={session} id={selected} />}
+          <TeamBall session={session} />
           <WithoutPose session={session} />
           <NewsList session={session} />
         </aside>
@@ -91,6 +93,18 @@ function FieldCanvas({ session, canvas }: { session: MonitorSession; canvas: { c
 function MeasureReadout({ session }: { session: MonitorSession }) {
   const measure = useValue(session.measure);
   return <span role="status" data-show="measure">{measure === null ? "" : measure_words(measure)}</span>;
+}
+
+/// What all know together, in words.
+function TeamBall({ session }: { session: MonitorSession }) {
+  const picture = useValue(session.feed.read);
+  if (picture === null) return null;
+  return (
+    <section class="team-ball" aria-label="Team ball and opponents">
+      <h3>Team ball</h3>
+      <p><span data-show="team-ball">{team_ball_words(picture)}</span> <span class="faint" data-show="opponents">{opponents_words(picture)}</span></p>
+    </section>
+  );
 }
 
 /// Whoever does not know where it is stands nowhere on the field.

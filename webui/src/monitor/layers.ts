@@ -5,6 +5,7 @@ export const all_layers = [
   { key: "uncertainty", title: "uncertainty", usual: true },
   { key: "balls", title: "balls", usual: true },
   { key: "opponents", title: "robots seen", usual: true },
+  { key: "team", title: "team ball and opponents", usual: true },
   { key: "tracks", title: "tracks", usual: true },
   { key: "lines", title: "lines", usual: false },
   { key: "goals", title: "goals", usual: false },

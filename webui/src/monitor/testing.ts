@@ -1,4 +1,4 @@
-import type { TeamPicture, TeamRobot } from "../link/monitor_api";
+import type { TeamPicture, TeamRobot, TeamThing } from "../link/monitor_api";
 import type { Pose } from "../scene";
 
 // What several tests of the monitor need; no part of the page.
@@ -15,6 +15,13 @@ export function robot(id: number, of: Partial<TeamRobot> = {}, at: Pose | null =
   };
 }
 
+/// Standing, known to 5 cm.
+export function team_thing(x = 0, y = 0): TeamThing {
+  return { x, y, vx: 0, vy: 0, cov: Array.from({ length: 16 }, (_, i) => (i % 5 === 0 ? 0.0025 : 0)), age: 0, robots: [1] };
+}
+
+export const team_ball = team_thing;
+
 export function team_picture(t: number, robots: TeamRobot[] = []): TeamPicture {
-  return { t, robots, troubles: [], news: 0, counts: { heard: 0, refused: 0, late: 0, repeated: 0, bytes_per_second: 0 } };
+  return { t, robots, opponents: [], troubles: [], news: 0, counts: { heard: 0, refused: 0, late: 0, repeated: 0, bytes_per_second: 0 } };
 }

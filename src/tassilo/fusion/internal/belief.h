@@ -10,7 +10,9 @@
 
 namespace tassilo {
 
-inline constexpr int kMaxWitnesses = 8;
+/// All of a team, or of both at a training match's bench: one more pushes out who saw the thing longest ago, and those
+/// who take turns in that are believed as if their pose errors were new each time.
+inline constexpr int kMaxWitnesses = 10;
 inline constexpr int kMaxBeliefSize = 4 + 3 * kMaxWitnesses;
 
 /// x, y, vx, vy of a thing in the field's axes [m, m/s], then three numbers for each witness: its pose error as
