@@ -7,21 +7,16 @@ import json
 import re
 import signal
 import subprocess
+import sys
 import time
 import unittest
 import urllib.request
 
 from bus_peer import free_domain
-from program import TIMEOUT_S, ProgramTest, main
+from program import ROOT, TIMEOUT_S, ProgramTest, main
 
-
-def rows(text):
-    """{what: [values or moments, median in cm, 90 % in cm, known in %, ...]} of a report."""
-    found = {}
-    for line in text.splitlines():
-        if match := re.fullmatch(r"(\S.*?)((?: +[\d.]+){3,6})", line):
-            found[match[1]] = [float(word) for word in match[2].split()]
-    return found
+sys.path.insert(0, str(ROOT / "tools"))
+from match_score import rows
 
 
 def words_between_robots(text):

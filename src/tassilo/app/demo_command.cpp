@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <exception>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "tassilo/app/bus_arguments.h"
@@ -41,30 +44,67 @@ GoalSide side_of(const FieldModel& field, const std::string& color) {
 
 bool is_paced(const DemoArguments& arguments) { return !arguments.is_headless && arguments.speed > 0; }
 
-/// Plays until it is time.
-void play(SimMatch& match, const DemoArguments& arguments) {
+/// Listens beside the match, to its end.
+class Beside {
+ public:
+  explicit Beside(LiveMonitor& monitor) : thread_([this, &monitor] { listen(monitor); }) {}
+  ~Beside() {
+    is_over_ = true;
+    thread_.join();
+  }
+  Beside(const Beside&) = delete;
+  Beside& operator=(const Beside&) = delete;
+  bool has_failed() const { return has_failed_; }
+  /// Throws what it failed of.
+  void finish() {
+    is_over_ = true;
+    thread_.join();
+    thread_ = std::thread([] {});
+    if (trouble_) std::rethrow_exception(trouble_);
+  }
+
+ private:
+  void listen(LiveMonitor& monitor) {
+    try {
+      monitor.run([&] { return is_over_.load(); });
+    } catch (...) {
+      trouble_ = std::current_exception();
+      has_failed_ = true;
+    }
+  }
+  std::atomic<bool> is_over_ = false, has_failed_ = false;
+  std::exception_ptr trouble_;
+  std::thread thread_;  // the last: it uses the others
+};
+
+/// Plays until it is time, or `is_over` says so.
+void play(SimMatch& match, const DemoArguments& arguments, const std::function<bool()>& is_over) {
   const auto begin = Clock::now();
+  auto next = begin;
   // Who cannot look at a clock is told how far it is.
   const double told_every = std::min(60., arguments.duration.value_or(600) / 10);
   double next_told = is_paced(arguments) || arguments.quiet ? 1e18 : told_every;
-  while (!is_interrupted() && (!arguments.duration || match.t() < *arguments.duration)) {
+  while (!is_over() && (!arguments.duration || match.t() < *arguments.duration)) {
+    const double t = match.t();
     match.step();
     for (const RefereeEvent& event : match.take_calls()) {
       if (arguments.quiet || event.call == RefereeCall::kick_off) continue;
       fmt::print("{:7.1f} s  {}{}   {} : {}\n", event.t, to_string(event.call),
                  event.call == RefereeCall::goal ? fmt::format(" for {}", to_string(event.team)) : "",
                  match.score().cyan, match.score().magenta);
-      std::fflush(stdout);
     }
     if (match.t() >= next_told) {
       next_told += told_every;
       fmt::print("{:7.1f} s  played\n", match.t());
-      std::fflush(stdout);
     }
     for (const std::string& line : match.news()) fmt::print("{}\n", line);
-    if (is_paced(arguments))
-      std::this_thread::sleep_until(begin + std::chrono::duration_cast<Clock::duration>(
-                                                std::chrono::duration<double>(match.t() / arguments.speed)));
+    std::fflush(stdout);
+    if (!is_paced(arguments)) continue;
+    next +=
+        std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>((match.t() - t) / arguments.speed));
+    // Time that was lost, by a slow machine or a stopped process, is not made up for.
+    next = std::max(next, Clock::now());
+    std::this_thread::sleep_until(next);
   }
   if (arguments.quiet) return;
   const MatchReport report = match.report();
@@ -74,48 +114,46 @@ void play(SimMatch& match, const DemoArguments& arguments) {
              match.score().cyan, match.score().magenta);
 }
 
+/// Of whatever team plays by its cameras.
+std::unique_ptr<SimMatch> trained_match(const SimMatchOptions& options, bool quiet) {
+  if (!quiet) {
+    fmt::print("training the colors on rendered stills\n");
+    std::fflush(stdout);
+  }
+  auto match = std::make_unique<SimMatch>(options);
+  if (!quiet)
+    fmt::print("{:.2f} % of their pixels are classified right by the others\n", 100 * match->colors_quality());
+  return match;
+}
+
 int demo(const DemoArguments& arguments) {
   end_cleanly_on_signals();
   SimMatchOptions options = arguments.match;
   options.field = read_field(arguments.field);
   options.cyan_own_goal = side_of(options.field, arguments.own_goal);
   options.compares_radios = arguments.reports;
-  options.is_paced = is_paced(arguments);
-  if (!arguments.is_headless) options.bus = arguments.bus.options();
-  if (!arguments.quiet) {
-    fmt::print("training the colors on rendered stills\n");
-    std::fflush(stdout);
-  }
-  SimMatch match(options);
-  if (!arguments.quiet)
-    fmt::print("{:.2f} % of their pixels are classified right by the others\n", 100 * match.colors_quality());
+  options.is_paced = is_paced(arguments) && arguments.speed <= 1;
+  std::unique_ptr<SimMatch> match;
   if (arguments.is_headless) {
-    play(match, arguments);
+    match = trained_match(options, arguments.quiet);
+    play(*match, arguments, is_interrupted);
   } else {
+    options.bus = arguments.bus.options();
     MonitorOptions monitor;
     monitor.field = options.field;
     monitor.bus = *options.bus;
     monitor.web = arguments.web.options();
     monitor.record = arguments.record;
     monitor.memory_s = arguments.memory_s;
-    LiveMonitor live(monitor);
+    LiveMonitor live(monitor);  // first: what is in its way is told at once
+    match = trained_match(options, arguments.quiet);
     tell_address(monitor.web, live.url());
-    std::atomic<bool> is_over = false;
-    std::optional<Error> trouble;
-    std::thread listener([&] {
-      try {
-        live.run([&] { return is_over.load(); });
-      } catch (const Error& error) {
-        trouble = error;
-      }
-    });
-    play(match, arguments);
-    is_over = true;
-    listener.join();
-    if (trouble) throw *trouble;
+    Beside listener(live);
+    play(*match, arguments, [&] { return is_interrupted() || listener.has_failed(); });
+    listener.finish();
     if (!arguments.quiet) fmt::print("bus: {}", live.summary());
   }
-  if (arguments.reports) fmt::print("{}", text_of(match.report()));
+  if (arguments.reports) fmt::print("{}", text_of(match->report()));
   return 0;
 }
 
@@ -138,10 +176,13 @@ Command add_demo(CLI::App& program) {
       ->check(CLI::Range(5., 60.))
       ->capture_default_str();
   command->add_option("--seed", arguments->match.seed, "another match")->capture_default_str();
-  command->add_option("--loss", arguments->match.loss, "share of what robots tell each other that is lost")
+  command
+      ->add_option("--loss", arguments->match.loss,
+                   "share of what robots tell each other that is lost; not of what the monitor hears")
       ->check(CLI::Range(0., 0.95))
       ->capture_default_str();
-  command->add_option("--delay", arguments->match.delay_s, "how long the rest takes, in the mean [s]")
+  command
+      ->add_option("--delay", arguments->match.delay_s, "how long the rest takes, in the mean, but to the monitor [s]")
       ->check(CLI::Range(0., 1.))
       ->capture_default_str();
   command->add_option("--opponents", arguments->match.opponents, "how fast magenta drives, of cyan's speed")
@@ -165,9 +206,12 @@ Command add_demo(CLI::App& program) {
   command->add_flag("--report", arguments->reports, "compare what was seen and known with the truth, at the end");
   command->add_option("--record", arguments->record, "write all that is told into this log, NAME.mcap")
       ->excludes(headless);
-  command->add_flag("-q,--quiet", arguments->quiet, "print nothing but the report and errors");
+  command->add_flag("-q,--quiet", arguments->quiet, "print nothing but the address, the report and what goes wrong");
+  const std::vector<const CLI::Option*> own = std::as_const(*command).get_options();
   arguments->bus.add_to(*command);
   arguments->web.add_to(*command);
+  for (CLI::Option* option : command->get_options())
+    if (std::ranges::find(own, option) == own.end()) option->excludes(headless);
   command->callback([arguments] {
     if (arguments->is_headless && !arguments->duration)
       throw CLI::ValidationError("--headless", "would never end, --duration is missing");

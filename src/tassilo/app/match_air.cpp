@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
+#include "tassilo/base/option_check.h"
 #include "tassilo/message/from_scene.h"
 #include "tassilo/message/plausible.h"
 #include "tassilo/message/to_scene.h"
@@ -24,6 +26,8 @@ std::optional<M> believed(const std::vector<std::byte>& bytes, int robot) {
 }
 
 }  // namespace
+
+std::int64_t stamp_of(double t) { return std::llround(t * 1e9); }
 
 TeamPacket packet_of(int robot, Team team, const Scene& scene, Role role) {
   const MessageContext context{.robot = robot, .team = team};
@@ -51,7 +55,7 @@ std::optional<TeamWord> word_of(const TeamPacket& packet, int robot) {
   word.role = role_from(state->role);
   word.observation.robot = robot;
   word.observation.t = seconds_of(stamp);
-  word.observation.stamp = static_cast<std::int64_t>(word.observation.t * 1e9);
+  word.observation.stamp = stamp_of(word.observation.t);
   word.observation.balls = balls_from(*balls);
   word.observation.robots = robots_from(*robots);
   if (packet.pose.empty()) return word;
@@ -66,16 +70,18 @@ TeamPacket spoiled(TeamPacket packet, std::mt19937_64& random) {
   const std::array<std::vector<std::byte>*, 4> messages{&packet.state, &packet.balls, &packet.robots, &packet.pose};
   std::vector<std::byte>& bytes = *messages[random() % messages.size()];
   if (bytes.empty()) {
-    bytes.assign(1 + random() % 64, static_cast<std::byte>(random()));
+    const std::size_t size = 1 + random() % 64;
+    bytes.assign(size, static_cast<std::byte>(random()));
     return packet;
   }
   switch (random() % 4) {
     case 0:
       bytes.resize(random() % bytes.size());
       break;
-    case 1:
-      bytes[random() % bytes.size()] ^= static_cast<std::byte>(1 + random() % 255);
-      break;
+    case 1: {
+      const std::size_t at = random() % bytes.size();
+      bytes[at] ^= static_cast<std::byte>(1 + random() % 255);
+    } break;
     case 2:
       for (std::byte& byte : bytes)
         if (random() % 4 == 0) byte = static_cast<std::byte>(random());
@@ -85,6 +91,13 @@ TeamPacket spoiled(TeamPacket packet, std::mt19937_64& random) {
   }
   return packet;
 }
+
+void AirOptions::check() const {
+  check_between("air.loss", loss, 0, 1);
+  check_between("air.delay", delay_s, 0, 60);
+}
+
+MatchAir::MatchAir(const AirOptions& options) : options_((options.check(), options)), random_(options.seed) {}
 
 void MatchAir::tell(double t, int from, int to, const std::shared_ptr<const TeamPacket>& packet) {
   std::uniform_real_distribution<double> chance(0, 1);

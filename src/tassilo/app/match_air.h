@@ -21,6 +21,8 @@ struct TeamPacket {
   std::vector<std::byte> state, balls, robots;
   std::vector<std::byte> pose;  ///< Empty: it does not know where it is.
 };
+/// The nanosecond by which an image is known.
+std::int64_t stamp_of(double t);
 /// Of what a robot saw at scene.t, and the role it plays.
 TeamPacket packet_of(int robot, Team team, const Scene& scene, Role role);
 
@@ -39,6 +41,7 @@ struct AirOptions {
   double loss = 0;     ///< Share of packets that do not come. 0..1
   double delay_s = 0;  ///< Of the others, in the mean; each takes between none and twice of it. [s], >= 0
   std::uint64_t seed = 1;
+  void check() const;  ///< Throws Error naming the first field out of range.
 };
 
 /// told = lost + refused + heard + those on their way.
@@ -51,7 +54,8 @@ struct AirCounts {
 /// threads  one at a time
 class MatchAir {
  public:
-  explicit MatchAir(const AirOptions& options) : options_(options), random_(options.seed) {}
+  /// Throws Error for options out of range.
+  explicit MatchAir(const AirOptions& options);
 
   /// At t, to one that listens.
   void tell(double t, int from, int to, const std::shared_ptr<const TeamPacket>& packet);
@@ -59,7 +63,7 @@ class MatchAir {
     int to = 0;
     TeamWord word;
   };
-  /// What has come by now and is understood; in the order in which it was told.
+  /// What has come by now and is understood; in the order in which it was told. O(what is on its way).
   std::vector<Heard> hear(double now);
   /// One listens no longer: what is on its way to it is lost.
   void leave(int listener);

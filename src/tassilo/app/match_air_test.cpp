@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <set>
+#include "tassilo/base/error.h"
 
 namespace tassilo {
 namespace {
@@ -90,6 +90,11 @@ TEST(MatchAir, CarriesAllWhereNothingIsLostInTheOrderInWhichItWasTold) {
   EXPECT_TRUE(air.hear(3).empty());
 }
 
+TEST(MatchAir, OptionsOutOfRangeAreNamed) {
+  EXPECT_THROW(MatchAir({.loss = 1.5}), Error);
+  EXPECT_THROW(MatchAir({.delay_s = -1}), Error);
+}
+
 TEST(MatchAir, EveryPacketIsAccountedFor) {
   std::mt19937_64 random(2);
   MatchAir air({.loss = 0.3, .delay_s = 0.2, .seed = 7});
@@ -114,8 +119,10 @@ TEST(MatchAir, EveryPacketIsAccountedFor) {
   EXPECT_NEAR(static_cast<double>(counts.lost), 0.3 * kPackets, 0.03 * kPackets);
   EXPECT_GT(counts.refused, kPackets / 8);
   // Each takes twice the mean at most.
-  EXPECT_TRUE(air.hear(0.01 * kPackets + 0.4).size() > 0 || air.on_the_way() == 0);
+  heard += static_cast<std::int64_t>(air.hear(0.01 * kPackets + 0.4).size());
   EXPECT_EQ(air.on_the_way(), 0U);
+  EXPECT_EQ(counts.heard, heard);
+  EXPECT_EQ(counts.told, counts.lost + counts.refused + counts.heard);
 }
 
 }  // namespace

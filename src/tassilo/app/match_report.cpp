@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <vector>
+
+#include "tassilo/base/contract.h"
 
 namespace tassilo {
 namespace {
@@ -14,16 +15,22 @@ double percent(std::int64_t part, std::int64_t all) {
   return all > 0 ? 100. * static_cast<double>(part) / static_cast<double>(all) : 0;
 }
 
+std::string centimeters(const Histogram& errors, double q, int width) {
+  const double cm = 100 * errors.quantile(q);
+  return errors.is_beyond(q) ? fmt::format("{:>{}}", fmt::format(">{:.0f}", cm), width)
+                             : fmt::format("{:>{}.1f}", cm, width);
+}
+
 std::string error_line(const char* what, const Histogram& errors) {
   if (errors.size() == 0) return fmt::format("{:<30}  never\n", what);
-  return fmt::format("{:<30} {:>7} {:>9.1f} {:>8.1f}\n", what, errors.size(), 100 * errors.quantile(0.5),
-                     100 * errors.quantile(0.9));
+  return fmt::format("{:<30} {:>7} {} {}\n", what, errors.size(), centimeters(errors, 0.5, 9),
+                     centimeters(errors, 0.9, 8));
 }
 
 std::string ball_line(const std::string& who, const BallKnowledge& ball) {
   if (ball.known == 0) return fmt::format("{:<30}  never\n", who);
-  return fmt::format("{:<30} {:>7} {:>9.1f} {:>8.1f} {:>8.1f} {:>8.2f} {:>8.1f}\n", who, ball.moments,
-                     100 * ball.errors.quantile(0.5), 100 * ball.errors.quantile(0.9),
+  return fmt::format("{:<30} {:>7} {} {} {:>8.1f} {:>8.2f} {:>8.1f}\n", who, ball.moments,
+                     centimeters(ball.errors, 0.5, 9), centimeters(ball.errors, 0.9, 8),
                      percent(ball.known, ball.moments), ball.squared.quantile(0.5),
                      100 * ball.squared.share_above(9.21));
 }
@@ -36,9 +43,9 @@ std::size_t Histogram::bin_of(double value) const {
 }
 
 void Histogram::add(double value) {
+  expects(std::isfinite(value), "Histogram: a number");
   ++counts_[bin_of(value)];
   ++size_;
-  sum_ += value;
 }
 
 double Histogram::quantile(double q) const {
@@ -62,6 +69,8 @@ std::string text_of(const MatchReport& report) {
   std::string text = "\nagainst the truth                values median cm    90 % cm\n";
   text += error_line("ball, as each robot sees it", report.ball_errors);
   text += error_line("pose", report.pose_errors);
+  text += fmt::format("images with balls of which none is within {:.1f} m of the ball: {} of {}\n",
+                      MatchReport::kAnother, report.false_balls, report.images);
   text += fmt::format("longest time without a pose within half a metre: {:.1f} s\n", report.longest_lost);
 
   text += "\nball while any robot sees it    moments median cm    90 % cm  known %  squared  above 9.21 %\n";

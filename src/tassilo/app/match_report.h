@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -19,19 +18,19 @@ namespace tassilo {
 class Histogram {
  public:
   explicit Histogram(double width) : width_(width) {}
+  /// A finite value.
   void add(double value);
   std::int64_t size() const { return size_; }
+  bool is_beyond(double q) const { return quantile(q) > (kBins - 1) * width_; }  ///< In the last bin.
   /// The middle of the bin of the value in which the share q of all is reached; of none: 0. Within half a width of the
   /// truth, but for values beyond the last bin. O(bins).
   double quantile(double q) const;
-  double mean() const { return size_ > 0 ? sum_ / static_cast<double>(size_) : 0; }
   double share_above(double value) const;  ///< Of what lies in bins beyond that of the value.
 
  private:
   static constexpr std::size_t kBins = 20000;
   std::size_t bin_of(double value) const;
   double width_;
-  double sum_ = 0;
   std::int64_t size_ = 0;
   std::vector<std::uint32_t> counts_ = std::vector<std::uint32_t>(kBins);
 };
@@ -52,11 +51,13 @@ struct RadioFigures {
 };
 
 struct MatchReport {
-  double seconds = 0;
+  double seconds = 0;  ///< Of play.
   Score score;
   std::int64_t images = 0;
   std::map<std::string, std::int64_t> deeds;  ///< Images after which cyan did this.
-  Histogram ball_errors = place_errors();     ///< Of balls that robots saw: on the floor. [m]
+  static constexpr double kAnother = 0.5;     ///< Further off, what was seen is not the ball. [m]
+  Histogram ball_errors = place_errors();     ///< Of balls that robots saw, on the floor, up to that. [m]
+  std::int64_t false_balls = 0;               ///< Images with balls of which none is the ball.
   Histogram pose_errors = place_errors();     ///< [m]
   double longest_lost = 0;                    ///< Without a pose within half a metre of the truth, one robot. [s]
   BallKnowledge surest;                       ///< The one robot that is surest at that moment, each by itself.

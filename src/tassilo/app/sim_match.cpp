@@ -94,7 +94,8 @@ SimMatch::SimMatch(const SimMatchOptions& options)
       renderer_(options.field, {camera_, mount_}, rendering(options.seed)),
       hall_(train_on_stills(renderer_, options.field, options.seed)),
       air_({options.loss, options.delay_s, options.seed}),
-      random_(options.seed) {
+      random_(options.seed),
+      clock_(unix_now()) {
   for (int i = 0; i < options_.robots; ++i) {
     world_.add(kFirstCyan + i, Team::cyan);
     world_.add(kFirstMagenta + i, Team::magenta);
@@ -121,6 +122,9 @@ MatchReport SimMatch::report() const {
   return report;
 }
 
+/// 0, 1, ...
+int SimMatch::any_of_team() { return static_cast<int>(random_() % static_cast<unsigned>(options_.robots)); }
+
 /// The first of each team, when it is more than one.
 bool SimMatch::is_goalkeeper(int id) const { return options_.robots > 1 && (id == kFirstCyan || id == kFirstMagenta); }
 
@@ -146,8 +150,7 @@ void SimMatch::seat_cyan(int id) {
     told.robot = id;
     told.bus = options_.bus;
     seat.sender = std::make_unique<TeamSender>(told);
-    seat.sender->begin(world_.state().t, false);
-    clock_ = unix_now() - world_.state().t;
+    seat.sender->begin(unix_now() - clock_, false);  // the clock of all
   }
   place_by_hand(seats_.insert_or_assign(id, std::move(seat)).first->second);
 }
@@ -167,7 +170,10 @@ void SimMatch::seat_magenta(int id) {
 /// Somebody puts it on its place and says where that is, as well as a hand puts it.
 void SimMatch::place_by_hand(Seat& seat) {
   const SimRobot* const robot = find_robot(world_.state(), seat.id);
-  const PoseGaussian place = gaussian_of({robot->at.x, robot->at.y, robot->theta, 0.1, 0.1});
+  constexpr double sigma = 0.05, heading_sigma = 0.05;  // of a hand [m, rad]
+  std::normal_distribution<double> slip(0, sigma), turn(0, heading_sigma);
+  const double x = robot->at.x + slip(random_), y = robot->at.y + slip(random_), theta = robot->theta + turn(random_);
+  const PoseGaussian place = gaussian_of({x, y, theta, sigma, heading_sigma});
   seat.workspace.history.clear();
   seat.workspace.history.beliefs.add(world_.state().t, belief_in(place, world_.state().t));
 }
@@ -185,8 +191,8 @@ void SimMatch::let_leave_and_come_back(double now) {
   }
   if (now < next_absence_) return;
   std::uniform_real_distribution<double> chance(0, 1);
-  const int id = static_cast<int>(random_() % static_cast<unsigned>(options_.robots)) +
-                 (random_() % 2 == 0 ? kFirstCyan : kFirstMagenta);
+  const int number = any_of_team();
+  const int id = number + (random_() % 2 == 0 ? kFirstCyan : kFirstMagenta);
   world_.remove(id);
   seats_.erase(id);
   opponents_.erase(id);
@@ -208,7 +214,7 @@ void SimMatch::see_and_play(Seat& seat) {
   // Its own image reaches it without the air.
   TeamObservation own;
   own.robot = seat.id;
-  own.stamp = static_cast<std::int64_t>(now * 1e9);
+  own.stamp = stamp_of(now);
   own.t = now;
   own.pose = scene.pose;
   own.balls = scene.balls;
@@ -250,24 +256,25 @@ void SimMatch::tell(const Seat& seat, const Scene& scene, Role role) {
   for (const auto& [id, other] : seats_)
     if (id != seat.id) air_.tell(scene.t, seat.id, id, packet);
   for (Bench& bench : benches_) bench.air.tell(scene.t, seat.id, 0, packet);
-  if (options_.has_unrest) send_garbage(scene.t, packet);
+  if (options_.has_unrest) send_garbage(scene.t, seat.id, packet);
 }
 
 /// The world outside has one time: there, what is told happened just now. Where the match cannot keep up with time, or
 /// is not to, its own goes another way.
 void SimMatch::keep_clock(double now) {
-  constexpr double behind = 0.25;  // nobody minds [s]
-  if (options_.is_paced && unix_now() - now - clock_ < behind) return;
+  constexpr double off = 0.25;  // nobody minds [s]
+  if (options_.is_paced && std::abs(unix_now() - now - clock_) < off) return;
   clock_ = unix_now() - now;
   for (auto& [id, seat] : seats_) seat.sender->begin(now, false);
 }
 
-/// In the name of a robot of the team or of one that nobody knows, to all.
-void SimMatch::send_garbage(double now, const std::shared_ptr<const TeamPacket>& packet) {
+/// Spoiled, mostly in the name of the robot that told it, else of another one or of one that nobody knows.
+void SimMatch::send_garbage(double now, int robot, const std::shared_ptr<const TeamPacket>& packet) {
   const auto garbage = std::make_shared<const TeamPacket>(spoiled(*packet, random_));
-  const int name = random_() % 2 == 0 ? kNobody : kFirstCyan + static_cast<int>(random_() % 4);
-  for (const auto& [id, other] : seats_) air_.tell(now, name, id, garbage);
-  benches_.front().air.tell(now, name, 0, garbage);
+  const int liar = random_() % 4 == 0 ? kNobody : random_() % 4 == 0 ? kFirstCyan + any_of_team() : robot;
+  for (const auto& [id, other] : seats_)
+    if (id != robot) air_.tell(now, liar, id, garbage);
+  benches_.front().air.tell(now, liar, 0, garbage);
 }
 
 void SimMatch::count(Contribution contribution) {
@@ -380,12 +387,12 @@ void SimMatch::note(Seat& seat, const Scene& scene) {
   for (const Ball& seen : scene.balls) {
     if (!seen.floor) continue;
     const double error = distance(seen.floor->position.mean, ball);
-    constexpr double another = 0.5;  // further off, it is not this ball but none [m]
-    if (error > another) continue;
+    if (error > MatchReport::kAnother) continue;
     report_.ball_errors.add(error);
     seat.sees_ball = true;
-    break;
+    return;
   }
+  if (!scene.balls.empty()) ++report_.false_balls;
 }
 
 /// What everybody makes of the ball, while anybody sees it.

@@ -5,6 +5,7 @@
 #include <optional>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tassilo/app/configuration_watch.h"
@@ -26,13 +27,13 @@ struct SimMatchOptions {
   double frame_rate = 20;                      ///< Images a second of each robot. [1/s], 5..60
   std::uint64_t seed = 1;                      ///< Of world, slip, noise, losses, opponents' eyes.
   GoalSide cyan_own_goal = GoalSide::minus_x;  ///< The goal that cyan defends.
-  double opponents = 0.7;                      ///< How fast magenta drives, of cyan's speed. 0..1
+  double opponents = 0.5;                      ///< How fast magenta drives, of cyan's speed. 0..1
   double loss = 0;                             ///< Share of what robots tell each other that is lost. 0..0.95
   double delay_s = 0.03;                       ///< How long the rest takes, in the mean. [s], 0..1
   bool is_dark = false;                        ///< Cyan's cameras show black.
-  bool has_unrest = false;       ///< Robots leave and come back, and garbage is sent to those who play on.
-  bool compares_radios = false;  ///< Also reports benches over air that loses and delays more and less.
-  bool is_paced = true;  ///< Somebody lets it play as fast as time goes, or slower; else it goes as fast as it can.
+  bool has_unrest = false;        ///< Robots leave and come back, and garbage is sent to those who play on.
+  bool compares_radios = false;   ///< Also reports benches over air that loses and delays more and less.
+  bool is_paced = true;           ///< Somebody lets it play as fast as time goes, or slower; else faster.
   std::optional<BusOptions> bus;  ///< Where cyan tells the world outside; nothing: nowhere.
   void check() const;             ///< Throws Error naming the first field out of range.
 };
@@ -40,15 +41,18 @@ struct SimMatchOptions {
 /// A match of two teams in one value: world, cameras, vision, team, players.
 ///
 /// Cyan plays by what its cameras show: each robot's image is rendered, seen by the vision with colors that were
-/// trained on rendered stills of this hall, told to the team as messages, combined, and played by; nothing else reaches
-/// its players. Magenta has eyes without pictures, and nobody of it tells the others anything. Deterministic by seed
-/// but for the bus, which nobody in it listens to.
+/// trained on rendered stills of this hall, told to the team as messages, combined, and played by; besides, its players
+/// have the odometry of their wheels, and somebody who tells them where they are put at kick-offs. Magenta has eyes
+/// without pictures, and nobody of it tells the others anything. Deterministic by seed but for the bus, which nobody in
+/// it listens to.
 ///
 /// threads  one at a time
 class SimMatch {
  public:
   /// Trains the colors first, some seconds. Throws Error for options out of range.
   explicit SimMatch(const SimMatchOptions& options);
+  SimMatch(const SimMatch&) = delete;
+  SimMatch& operator=(const SimMatch&) = delete;
 
   /// One image of each robot, what comes of it, and the time until the next one. Throws Error when the bus is lost.
   void step();
@@ -73,7 +77,7 @@ class SimMatch {
     TeamFusion alone;  ///< Of its own images only, to compare with.
     bool sees_ball = false;
     std::map<int, Teammate> mates;
-    std::map<int, double> heard_at;
+    std::map<int, double> heard_at;  ///< [s]
     PlayerOptions player;
     PlayerState state;
     WheelCommand command;
@@ -97,6 +101,7 @@ class SimMatch {
     double until = 0;  ///< [s]
   };
 
+  int any_of_team();
   bool is_goalkeeper(int id) const;
   void seat_cyan(int id);
   void seat_magenta(int id);
@@ -105,7 +110,7 @@ class SimMatch {
   void see_and_play(Seat& seat);
   void tell(const Seat& seat, const Scene& scene, Role role);
   void keep_clock(double now);
-  void send_garbage(double now, const std::shared_ptr<const TeamPacket>& packet);
+  void send_garbage(double now, int robot, const std::shared_ptr<const TeamPacket>& packet);
   void hear(double now);
   void count(Contribution contribution);
   void play(int id, Opponent& opponent);

@@ -11,9 +11,10 @@ namespace {
 constexpr double kPatience = 0.1;
 /// Images are known for so long beyond the history: what is of an older one is too late for the fusion. [s]
 constexpr double kKeptLonger = 0.5;
-constexpr std::size_t kMostImages = 4096;  // ten robots have 450
-constexpr double kTellsColor = 5;          // who was silent for longer is gone [s]
-constexpr double kColorStep = 1;           // beginning anew costs milliseconds: not for everybody who asks for it [s]
+constexpr std::size_t kMostImages = 2048;      // ten robots have 450
+constexpr std::size_t kMostImagesOfOne = 128;  // one has 45
+constexpr double kTellsColor = 5;              // who was silent for longer is gone [s]
+constexpr double kColorStep = 1;  // beginning anew costs milliseconds: not for everybody who asks for it [s]
 
 }  // namespace
 
@@ -33,8 +34,12 @@ void TeamBench::hear(const Heard& heard, const Believed& believed) {
   const Key key{believed.robot, believed.stamp};
   auto found = images_.find(key);
   if (found == images_.end()) {
+    // Who begins images without end crowds out its own, nobody else's.
+    if (waiting_[key.first] >= kMostImagesOfOne)
+      forget(static_cast<std::size_t>(std::ranges::find(order_, key.first, &Key::first) - order_.begin()));
     found = images_.emplace(key, Image{now, believed.t, {}, {}, {}, {}, false}).first;
     order_.push_back(key);
+    ++waiting_[key.first];
   }
   Image& image = found->second;
   if (name == kPoseTopic.name) {
@@ -69,10 +74,10 @@ void TeamBench::give(const Key& key, Image& image, double now) {
   observation.pose = image.pose;
   if (image.balls) observation.balls = std::move(*image.balls);
   if (image.robots) observation.robots = std::move(*image.robots);
-  fusion_.add(observation, now);
+  if (fusion_.add(observation, now) != Contribution::taken) return;
   recent_.push_back(std::move(observation));
-  while (recent_.size() > static_cast<std::size_t>(options_.max_observations) ||
-         recent_.front().t < now - options_.history - kKeptLonger)
+  while (!recent_.empty() && (recent_.size() > static_cast<std::size_t>(options_.max_observations) ||
+                              recent_.front().t < now - options_.history - kKeptLonger))
     recent_.pop_front();
 }
 
@@ -81,13 +86,21 @@ void TeamBench::give_due(double now) {
   const auto is_older = [&](const Key& key, double age) { return images_.at(key).heard_at <= now - age; };
   while (due_ < order_.size() && is_older(order_[due_], kPatience)) {
     const Key key = order_[due_++];
-    give(key, images_.at(key), now);
+    Image& image = images_.at(key);
+    give(key, image, image.heard_at + kPatience);  // whenever somebody asks
   }
   while (!order_.empty() && (order_.size() > kMostImages || is_older(order_.front(), options_.history + kKeptLonger))) {
-    images_.erase(order_.front());
-    order_.pop_front();
-    due_ -= std::min<std::size_t>(due_, 1);
+    forget(0);
   }
+}
+
+/// The image that is `at` in the order.
+void TeamBench::forget(std::size_t at) {
+  const Key key = order_[at];
+  if (--waiting_.at(key.first) == 0) waiting_.erase(key.first);
+  images_.erase(key);
+  order_.erase(order_.begin() + static_cast<std::ptrdiff_t>(at));
+  if (at < due_) --due_;
 }
 
 /// Soon after a color is told, whoever asks for the team meanwhile: what is looked back at is as it was live.

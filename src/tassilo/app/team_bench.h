@@ -21,7 +21,8 @@ namespace tassilo {
 ///
 /// All who talk are heard as one team, since there is one ball. While they tell one color, robots seen in it are no
 /// opponents; when they tell several, as when both teams of a training match are watched, a marker tells nothing, and
-/// only those whom nobody's pose explains are opponents.
+/// only those whom nobody's pose explains are opponents. When what is told of colors changes, what was seen more than a
+/// second ago is forgotten, and numbers of things begin anew.
 ///
 /// Memory is bounded, whatever comes. threads  one at a time
 class TeamBench {
@@ -31,8 +32,8 @@ class TeamBench {
 
   /// Takes what TeamView made of the message. O(its size + images of the last second).
   void hear(const Heard& heard, const Believed& believed);
-  /// What the team knows at this time, field frame; nothing when nobody knows. Times grow. Some 5 us for each image
-  /// since the last one.
+  /// What the team knows at this time, field frame; nothing when nobody knows. Times grow. Some 5 to
+  /// 10 us for each image since the last one.
   TeamWorld at(double now);
 
  private:
@@ -55,6 +56,7 @@ class TeamBench {
 
   void give(const Key& key, Image& image, double now);
   void give_due(double now);
+  void forget(std::size_t at);
   void ask_color(double now);
 
   TeamFusionOptions options_;
@@ -62,6 +64,7 @@ class TeamBench {
   std::map<int, Voice> voices_;
   std::map<Key, Image> images_;
   std::deque<Key> order_;               ///< Of `images_`, as they were first heard of.
+  std::map<int, std::size_t> waiting_;  ///< Of each robot, of `images_`; none is 0.
   std::size_t due_ = 0;                 ///< So many of them, the oldest, wait for no other message.
   std::deque<TeamObservation> recent_;  ///< Given, of the history: a fusion that begins anew needs them.
   double asked_at_ = -1e9;

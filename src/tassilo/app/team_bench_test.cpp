@@ -280,6 +280,23 @@ TEST(TeamBench, OpponentsAreThoseOfAnotherColorAndOfAnyWhileBothTeamsTalk) {
   EXPECT_EQ(opponents({kNear, theirs}, Team::cyan), 1U);
 }
 
+// A link that stood still for seconds.
+TEST(TeamBench, WhatComesSecondsLateChangesNothing) {
+  Ear ear;
+  hear_all(ear, play({kNear}, {.ball = kBall}));
+  auto late = packets_of(kFar, kStart - 2, {.ball = FieldPoint{2, 2}});
+  for (Packet& packet : late) packet.arrival = kStart + 1;
+  ear.hear(late);
+  const TeamWorld known = ear.bench.at(kStart + 1);
+  ASSERT_TRUE(known.ball);
+  EXPECT_LT(distance(known.ball->position.mean, kBall), 0.05);
+  EXPECT_THAT(known.ball->robots, ElementsAre(1));
+  // Nor as the first thing that is ever heard.
+  Ear new_ear;
+  new_ear.hear(late);
+  EXPECT_FALSE(new_ear.bench.at(kStart + 1).ball);
+}
+
 TEST(TeamBench, AFloodOfImagesEndsNothing) {
   Ear ear;
   for (int i = 0; i < 6000; ++i) ear.hear(packets_of(kNear, kStart + i * 1e-4, {.ball = kBall}));

@@ -85,12 +85,16 @@ Deed deed_of(const Play& play, Role role) {
   if (!now.ball) return search(play);
   play.state.searches_since.reset();
   const bool is_keepers = is_in_goal_area(now, *play.input.field, now.in_field(*now.ball));
-  const bool has_keeper = std::ranges::any_of(play.input.mates, &Teammate::is_goalkeeper);
+  // Who has not been heard of for long may be gone.
+  const auto is_there = [&](const Teammate& mate) { return mate.age <= play.options.max_team_age; };
+  const bool has_keeper =
+      std::ranges::any_of(play.input.mates, [&](const Teammate& m) { return m.is_goalkeeper && is_there(m); });
   if (role == Role::striker && !(is_keepers && has_keeper)) return strike(play);
   play.state.has_ball_since.reset();
   // A striker that leaves the ball to the goalkeeper stands where no defender does.
   if (role == Role::striker)
-    return defend({now, play.input, play.options, play.state, static_cast<int>(play.input.mates.size())});
+    return defend({now, play.input, play.options, play.state,
+                   static_cast<int>(std::ranges::count_if(play.input.mates, is_there))});
   return defend(play);
 }
 

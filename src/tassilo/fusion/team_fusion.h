@@ -127,8 +127,8 @@ class TeamFusion {
   Contribution add(const TeamObservation& observation, double now);
 
   /// What the team knows at t: by the observations up to t, from then on by prediction. Of a time before the history
-  /// nothing is known any more. Some 5 us for each observation that is new or younger than what came late; no memory
-  /// is allocated once the usual number of things was seen.
+  /// nothing is known any more. Some 5 us, or 10 with ten robots, for each observation that is new or younger than what
+  /// came late; no memory is allocated once the usual number of things was seen.
   TeamWorld at(double t);
 
   const TeamFusionCounts& counts() const;

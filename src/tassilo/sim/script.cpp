@@ -198,8 +198,7 @@ SimMotion scripted_stills(const FieldModel& field, const ScriptOptions& options)
     // The ball close by, so that its color is seen from near and far.
     const double ahead = me.radius + (turn == 0 ? 4 : 12) * state.ball.radius,
                  aside = (turn % 2 == 0 ? 2 : -5) * state.ball.radius;
-    const FieldPoint near =
-        make_pose2<FieldFrame, RobotFrame>(me.at.x, me.at.y, me.theta) * FloorPoint{ahead + me.radius, aside};
+    const FieldPoint near = pose_of(me) * FloorPoint{ahead + me.radius, aside};
     if (near.x > extent.x.low && near.x < extent.x.high && near.y > extent.y.low && near.y < extent.y.high)
       state.ball.at = near;
     return state;

@@ -86,7 +86,7 @@ FloorPoint aimed_goal(const Play& play, FloorPoint ball) {
     return now.in_robot({now.other_goal.x, share * (now.goal_half_width - now.ball_radius)});
   };
   double best = -1e9, aim = 0;
-  for (const double share : {-0.6, -0.3, 0., 0.3, 0.6}) {
+  for (const double share : {-0.8, -0.6, -0.4, -0.2, 0., 0.2, 0.4, 0.6, 0.8}) {
     const double kept = std::abs(share - play.state.aim) < 0.1 ? 0.15 : 0;
     const double value = std::min(room_of_shot(now, ball, place(share)), 0.4) + kept - 0.1 * std::abs(share);
     if (value > best) {
