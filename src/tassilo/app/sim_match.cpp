@@ -174,8 +174,11 @@ void SimMatch::place_by_hand(Seat& seat) {
   std::normal_distribution<double> slip(0, sigma), turn(0, heading_sigma);
   const double x = robot->at.x + slip(random_), y = robot->at.y + slip(random_), theta = robot->theta + turn(random_);
   const PoseGaussian place = gaussian_of({x, y, theta, sigma, heading_sigma});
+  // Before the next image: what is known of its own time is not asked for.
+  constexpr double before = 1e-3;  // [s]
+  const double t = world_.state().t - before;
   seat.workspace.history.clear();
-  seat.workspace.history.beliefs.add(world_.state().t, belief_in(place, world_.state().t));
+  seat.workspace.history.beliefs.add(t, belief_in(place, t));
 }
 
 /// One robot at a time is away.

@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "tassilo/base/option_check.h"
-#include "tassilo/fusion/internal/team_state.h"
+#include "tassilo/fusion/internal/packed_state.h"
 
 namespace tassilo {
 namespace {
@@ -62,12 +62,15 @@ struct TeamFusion::History {
   /// The state after the first `count` images.
   struct Checkpoint {
     std::size_t count = 0;
-    TeamState state;
+    PackedState state;
   };
 
   explicit History(const TeamFusionOptions& with) : options(with) {
     options.check();
     images.reserve(static_cast<std::size_t>(options.max_observations) + 1);
+    constexpr int usual = 32;  // more than an option's default, not more than there is memory
+    newest.tracks.reserve(
+        static_cast<std::size_t>(std::min(options.max_balls, usual) + std::min(options.max_opponents, usual)));
   }
 
   Contribution add(const TeamObservation& observation, double now);
@@ -77,11 +80,12 @@ struct TeamFusion::History {
   void settle(std::size_t count);
 
   TeamFusionOptions options;
-  TeamState settled;                       ///< After all that is not in `images` any more.
+  PackedState settled;                     ///< After all that is not in `images` any more.
   bool has_settled = false;                ///< Is there any?
   RecycledVector<SeenImage> images;        ///< By is_before.
   RecycledVector<Checkpoint> checkpoints;  ///< By rising count, multiples of kStride.
-  Checkpoint newest;                       ///< The last one asked for, of any count; 0: none.
+  TeamState newest;                        ///< The last one asked for.
+  std::size_t newest_count = 0;            ///< After so many images; 0: none.
   std::size_t reckoned = 0;                ///< Images that were taken in before, for counts.replayed.
   TeamFusionCounts counts;
 };
@@ -113,7 +117,7 @@ Contribution TeamFusion::History::add(const TeamObservation& observation, double
   }
   images.insert(place, std::move(image));
   std::erase_if(checkpoints, [&](const Checkpoint& one) { return one.count > index; });
-  if (newest.count > index) newest.count = 0;
+  if (newest_count > index) newest_count = 0;
 
   const auto old =
       std::ranges::partition_point(images, [&](const SeenImage& one) { return one.t < now - options.history; });
@@ -129,18 +133,18 @@ const TeamState& TeamFusion::History::after(std::size_t count) {
   const auto next = std::ranges::upper_bound(checkpoints, count, {}, &Checkpoint::count);
   const Checkpoint* from = next == checkpoints.begin() ? nullptr : &*(next - 1);
   const std::size_t kept = from != nullptr ? from->count : 0;
-  if (newest.count == 0 || newest.count > count || newest.count < kept) {
-    newest.state = from != nullptr ? from->state : settled;
-    newest.count = kept;
+  if (newest_count == 0 || newest_count > count || newest_count < kept) {
+    unpack(from != nullptr ? from->state : settled, newest);
+    newest_count = kept;
   }
-  for (std::size_t i = newest.count; i < count; ++i) {
-    take(newest.state, images[i], options);
+  for (std::size_t i = newest_count; i < count; ++i) {
+    take(newest, images[i], options);
     if ((i + 1) % kStride == 0 && (checkpoints.empty() || checkpoints.back().count < i + 1))
-      checkpoints.push_back({i + 1, newest.state});
+      checkpoints.push_back({i + 1, packed(newest)});
   }
-  newest.count = count;
+  newest_count = count;
   reckoned = std::max(reckoned, count);
-  return newest.state;
+  return newest;
 }
 
 void TeamFusion::History::settle(std::size_t count) {
@@ -152,7 +156,7 @@ void TeamFusion::History::settle(std::size_t count) {
   checkpoints.erase(checkpoints.begin(), next);
   for (Checkpoint& one : checkpoints) one.count -= gone;
   images.erase(images.begin(), images.begin() + static_cast<std::ptrdiff_t>(gone));
-  newest.count = newest.count >= gone ? newest.count - gone : 0;
+  newest_count = newest_count >= gone ? newest_count - gone : 0;
   reckoned = reckoned >= gone ? reckoned - gone : 0;
 }
 

@@ -36,12 +36,11 @@ struct Witness {
   int robot = 0;
   double seen_at = 0;
 };
-/// A thing followed over time.
-struct FieldTrack {
+/// What is known of a thing followed over time, but where it is.
+struct TrackFacts {
   int id = 0;  ///< 0 until it is sure enough to be told.
   TrackKind kind = TrackKind::ball;
-  std::array<Belief, 2> beliefs;                 ///< If it rolls; if it was just kicked: of a ball only.
-  double kicked = 0;                             ///< Probability of the latter.
+  double kicked = 0;                             ///< Probability that it was just kicked.
   std::array<Witness, kMaxWitnesses> witnesses;  ///< Of beliefs, in their order.
   double seen_at = 0;                            ///< [s]
   double support = 0;                            ///< Confidences of all its sightings.
@@ -51,6 +50,11 @@ struct FieldTrack {
 
   bool may_be_kicked() const { return kind == TrackKind::ball; }
   Team team() const { return cyan > magenta ? Team::cyan : magenta > cyan ? Team::magenta : Team::unknown; }
+};
+/// A thing followed over time.
+struct FieldTrack : TrackFacts {
+  std::array<Belief, 2> beliefs;  ///< If it rolls; if it was just kicked: of a ball only.
+
   std::span<const Witness> known_witnesses() const {
     return {witnesses.data(), static_cast<std::size_t>(witness_count(beliefs[0]))};
   }
