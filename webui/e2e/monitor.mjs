@@ -145,6 +145,7 @@ async function main(url, browser, screenshots, { robots: wanted, "least-rate": l
         return placed.length >= Number(wanted) && robots.some(({ scene: { balls } }) => balls.length > 0);
       });
       await until("the team knows where the ball is", async () => (await shown_picture()).team_ball !== undefined);
+      await page.setViewportSize({ width: 1280, height: 800 });  // of the picture in the README
       // Some seconds of play, for the trails.
       await pause(6000);
       const striker = (await shown_picture()).robots.find(({ role, scene: { balls } }) => role === "striker" && balls.length > 0)
