@@ -11,7 +11,7 @@ help:  ## this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1 \t\2/' | expand -t 22
 
 .PHONY: demo
-demo: program  ## install what is missing, build, play a simulated match and show it in a browser; DURATION=20 ends it
+demo: program  ## install what is missing, build, play a simulated match and show it in a browser; DURATION=20 ends it, DEMO_OPTIONS="--port 0"
 	build/release/bin/tassilo demo --report $(if $(DURATION),--duration $(DURATION)) $(DEMO_OPTIONS)
 
 .PHONY: recording

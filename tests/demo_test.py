@@ -32,7 +32,7 @@ class Demo(ProgramTest):
         cls.short = ("demo", "--headless", "--report", "--robots", "2", "--fps", "15")
 
     def test_what_is_seen_and_known_is_near_the_truth(self):
-        told = self.succeeds("demo", "--headless", "--report", "--robots", "3", "--fps", "15", "--duration", "10").out
+        told = self.succeeds("demo", "--headless", "--radios", "--robots", "3", "--fps", "15", "--duration", "10").out
         report = rows(told)
         self.assertGreater(report["pose"][0], 150, told)
         self.assertLess(report["pose"][1], 6, told)
@@ -88,6 +88,11 @@ class Demo(ProgramTest):
             demo.kill()
             demo.wait()
             demo.stdout.close()
+
+    def test_fields_without_goals_are_played_on(self):
+        told = self.succeeds("demo", "--field", "ssl", *self.short[1:], "--duration", "2").out
+        self.assertGreater(rows(told)["pose"][0], 20, told)
+        self.fails("demo", "--field", "ssl", "--own-goal", "blue", "--duration", "1", says=["--own-goal", "blue"])
 
     def test_wrong_usage_is_refused(self):
         self.refuses("demo", "--headless", says="--duration")

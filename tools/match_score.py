@@ -25,7 +25,7 @@ def rows(report):
 
 
 def play(program, seed, arguments):
-    command = [program, "demo", "--headless", "--report", "--seed", str(seed), "--duration", str(arguments.duration), "--fps", str(arguments.fps), *arguments.options]
+    command = [program, "demo", "--headless", "--radios", "--seed", str(seed), "--duration", str(arguments.duration), "--fps", str(arguments.fps), *arguments.options]
     done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     if done.returncode != 0:
         sys.exit(f"match_score: seed {seed}: {done.stderr.strip() or done.returncode}")

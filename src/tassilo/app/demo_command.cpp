@@ -28,18 +28,34 @@ struct DemoArguments {
   SimMatchOptions match;
   WebArguments web;
   BusArguments bus;
-  std::string field = "msl98", own_goal = "yellow", record;
+  std::string field = "msl98", own_goal, record;
   std::optional<double> duration;
   double speed = 1, memory_s = MonitorOptions{}.memory_s;
-  bool is_headless = false, reports = false, quiet = false;
+  bool is_headless = false, reports = false, compares_radios = false, quiet = false;
 };
 
 using Clock = std::chrono::steady_clock;
 
+/// Of the goal of a color; where none is asked for, of the yellow one, or the left end of a field that has none.
 GoalSide side_of(const FieldModel& field, const std::string& color) {
   const auto side = side_of_goal(field, color == to_string(GoalColor::blue) ? GoalColor::blue : GoalColor::yellow);
-  if (!side) throw Error("--own-goal", "is " + color + ", but the field has no such goal");
-  return *side;
+  if (!side && !color.empty()) throw Error("--own-goal", "is " + color + ", but the field has no such goal");
+  return side.value_or(GoalSide::minus_x);
+}
+
+/// What the referee calls, for people.
+const char* words_of(RefereeCall call) {
+  switch (call) {
+    case RefereeCall::kick_off:
+      return "kick-off";
+    case RefereeCall::goal:
+      return "goal";
+    case RefereeCall::ball_out:
+      return "ball out, put back";
+    case RefereeCall::stuck_ball:
+      return "ball stuck, put elsewhere";
+  }
+  return "";
 }
 
 bool is_paced(const DemoArguments& arguments) { return !arguments.is_headless && arguments.speed > 0; }
@@ -89,7 +105,7 @@ void play(SimMatch& match, const DemoArguments& arguments, const std::function<b
     match.step();
     for (const RefereeEvent& event : match.take_calls()) {
       if (arguments.quiet || event.call == RefereeCall::kick_off) continue;
-      fmt::print("{:7.1f} s  {}{}   {} : {}\n", event.t, to_string(event.call),
+      fmt::print("{:7.1f} s  {}{}   {} : {}\n", event.t, words_of(event.call),
                  event.call == RefereeCall::goal ? fmt::format(" for {}", to_string(event.team)) : "",
                  match.score().cyan, match.score().magenta);
     }
@@ -112,6 +128,10 @@ void play(SimMatch& match, const DemoArguments& arguments, const std::function<b
   fmt::print("\n{:.1f} s played in {:.1f} s; {:.1f} images a second and robot; cyan {} : {} magenta\n", match.t(),
              seconds, static_cast<double>(report.images) / arguments.match.robots / std::max(seconds, 1e-9),
              match.score().cyan, match.score().magenta);
+  constexpr double slower = 0.95;  // is seen
+  if (is_paced(arguments) && match.t() < slower * arguments.speed * seconds)
+    fmt::print("that is {:.1f} times as fast as time, asked for was {:g}: fewer --robots or --fps are easier\n",
+               match.t() / seconds, arguments.speed);
 }
 
 /// Of whatever team plays by its cameras.
@@ -122,7 +142,7 @@ std::unique_ptr<SimMatch> trained_match(const SimMatchOptions& options, bool qui
   }
   auto match = std::make_unique<SimMatch>(options);
   if (!quiet)
-    fmt::print("{:.2f} % of their pixels are classified right by the others\n", 100 * match->colors_quality());
+    fmt::print("{:.2f} % of the pixels of held-out stills are classified right\n", 100 * match->colors_quality());
   return match;
 }
 
@@ -131,7 +151,7 @@ int demo(const DemoArguments& arguments) {
   SimMatchOptions options = arguments.match;
   options.field = read_field(arguments.field);
   options.cyan_own_goal = side_of(options.field, arguments.own_goal);
-  options.compares_radios = arguments.reports;
+  options.compares_radios = arguments.compares_radios;
   options.is_paced = is_paced(arguments) && arguments.speed <= 1;
   std::unique_ptr<SimMatch> match;
   if (arguments.is_headless) {
@@ -147,13 +167,14 @@ int demo(const DemoArguments& arguments) {
     monitor.memory_s = arguments.memory_s;
     LiveMonitor live(monitor);  // first: what is in its way is told at once
     match = trained_match(options, arguments.quiet);
+    if (is_interrupted()) return 0;
     tell_address(monitor.web, live.url());
     Beside listener(live);
     play(*match, arguments, [&] { return is_interrupted() || listener.has_failed(); });
     listener.finish();
     if (!arguments.quiet) fmt::print("bus: {}", live.summary());
   }
-  if (arguments.reports) fmt::print("{}", text_of(match->report()));
+  if (arguments.reports || arguments.compares_radios) fmt::print("{}", text_of(match->report()));
   return 0;
 }
 
@@ -169,9 +190,10 @@ Command add_demo(CLI::App& program) {
   command->add_option("--robots", arguments->match.robots, "robots a team")
       ->check(CLI::Range(1, 8))
       ->capture_default_str();
-  command->add_option("--own-goal", arguments->own_goal, "the goal that cyan defends")
-      ->check(CLI::IsMember({"yellow", "blue"}))
-      ->capture_default_str();
+  command
+      ->add_option("--own-goal", arguments->own_goal,
+                   "the goal that cyan defends (default: the yellow one, where the field has one)")
+      ->check(CLI::IsMember({"yellow", "blue"}));
   command->add_option("--fps", arguments->match.frame_rate, "images a second of each robot")
       ->check(CLI::Range(5., 60.))
       ->capture_default_str();
@@ -192,7 +214,7 @@ Command add_demo(CLI::App& program) {
                     "robots leave and come back, and garbage is sent to those who play on");
   command->add_flag("--dark", arguments->match.is_dark, "cyan's cameras show black");
   command->add_option("--duration", arguments->duration, "end after so many seconds of play (default: Ctrl-C)")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(0.1, 1e6));
   auto* headless = command->add_flag("--headless", arguments->is_headless,
                                      "without bus and monitor, as fast as it goes; needs --duration");
   command->add_option("--speed", arguments->speed, "of play, real time being 1; 0: as fast as it goes")
@@ -204,6 +226,8 @@ Command add_demo(CLI::App& program) {
       ->check(CLI::Range(1., 3600.))
       ->capture_default_str();
   command->add_flag("--report", arguments->reports, "compare what was seen and known with the truth, at the end");
+  command->add_flag("--radios", arguments->compares_radios,
+                    "report also what a bench would know that hears all, over air that loses and delays more and less");
   command->add_option("--record", arguments->record, "write all that is told into this log, NAME.mcap")
       ->excludes(headless);
   command->add_flag("-q,--quiet", arguments->quiet, "print nothing but the address, the report and what goes wrong");

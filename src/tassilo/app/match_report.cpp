@@ -66,6 +66,7 @@ double Histogram::share_above(double value) const {
 }
 
 std::string text_of(const MatchReport& report) {
+  if (report.images == 0) return "nothing was seen, so there is nothing to compare\n";
   std::string text = "\nagainst the truth                values median cm    90 % cm\n";
   text += error_line("ball, as each robot sees it", report.ball_errors);
   text += error_line("pose", report.pose_errors);
@@ -94,9 +95,8 @@ std::string text_of(const MatchReport& report) {
   for (const auto& [count, deed] : deeds) text += fmt::format(" {} {:.0f} %", deed, percent(-count, all));
   const AirCounts& air = report.air;
   text += fmt::format(
-      "\nwords between robots: {} told = {} lost + {} refused + {} under way + {} taken + {} too late + {} repeated + "
-      "{} "
-      "of no time\n",
+      "\nwords between robots: {} told = {} lost + {} refused + {} under way + {} taken + {} too late + {} repeated"
+      " + {} without a possible time\n",
       air.told, air.lost, air.refused, report.on_the_way, report.taken, report.late, report.repeated,
       report.of_no_time);
   if (report.left > 0) text += fmt::format("robots left {} times, came back {} times\n", report.left, report.came_back);

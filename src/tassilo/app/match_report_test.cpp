@@ -48,6 +48,8 @@ TEST(Histogram, WhatIsNoErrorAndWhatIsHugeIsCounted) {
 
 TEST(MatchReport, TellsOfBallsThatNobodyKnew) {
   MatchReport report;
+  EXPECT_EQ(text_of(report), "nothing was seen, so there is nothing to compare\n");
+  report.images = 4;
   report.blind.moments = 3;
   report.deeds = {{"search", 3}, {"defend", 1}};
   const std::string text = text_of(report);
