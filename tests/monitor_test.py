@@ -275,7 +275,7 @@ class Monitor(Watched):
         run = self.start("run", "--robot", "robot.yaml", "--colors", "div.yaml", "--source", RECORDING / "video.mkv", "--odometry",
                          RECORDING / "odometry.jsonl", "--bus", "--domain", self.domain, stdout=subprocess.PIPE, text=True)
         self.running.append(run)
-        self.wait_for("the robot", lambda: (r := self.robots().get(6)) and r["scene"]["pose"] and seen.append(r) is None)
+        self.wait_for("the robot", lambda: (r := self.robots().get(6)) and r["scene"]["pose"] and r["team"] != "unknown" and seen.append(r) is None)
         self.assertEqual(seen[0]["team"], "magenta")
         out, _ = run.communicate(timeout=TIMEOUT_S)
         self.assertEqual(run.returncode, 0)
