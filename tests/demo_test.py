@@ -16,13 +16,7 @@ from bus_peer import free_domain
 from program import ROOT, TIMEOUT_S, ProgramTest, main
 
 sys.path.insert(0, str(ROOT / "tools"))
-from match_score import rows
-
-
-def words_between_robots(text):
-    """{what became of them: how many}; "told" is all."""
-    line = re.search(r"words between robots: (.+)", text)[1]
-    return {name: int(number) for number, name in re.findall(r"(\d+) ([a-z ]+?)(?: [=+]|$)", line)}
+from match_score import rows, words_between_robots
 
 
 class Demo(ProgramTest):

@@ -18,6 +18,9 @@ import urllib.request
 
 from bus_peer import free_domain
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "tools"))
+from match_score import words_between_robots
+
 GROWTH = .05           # of memory after the first minute: what an allocator needs to settle
 LEAST_GROWTH_KB = 8192  # a page cache of a thread or two, whatever the size
 GUEST_S = 1.5          # that a robot without a match stays
@@ -74,12 +77,12 @@ class Guests:
 
 
 def accounted(report):
-    """The numbers of the line about words between robots; they must add up."""
-    line = re.search(r"words between robots: (\d+) told = (.+)", report)
-    parts = [int(number) for number in re.findall(r"\d+", line[2])]
-    assert int(line[1]) == sum(parts), line[0]
-    assert int(re.search(r"(\d+) refused", line[2])[1]) > 0, f"no garbage was refused: {line[0]}"
-    return line[0]
+    """What became of the words between robots; it must add up."""
+    words = words_between_robots(report)
+    told = words.pop("told")
+    assert told == sum(words.values()), f"{told} told, but {words}"
+    assert words["refused"] > 0, f"no garbage was refused: {words}"
+    return f"of {told} words: {words}"
 
 
 def soak(arguments):

@@ -24,6 +24,12 @@ def rows(report):
     return found
 
 
+def words_between_robots(text):
+    """{what became of them: how many}; "told" is all."""
+    line = re.search(r"words between robots: (.+)", text)[1]
+    return {name: int(number) for number, name in re.findall(r"(\d+) ([a-z ]+?)(?: [=+]|$)", line)}
+
+
 def play(program, seed, arguments):
     command = [program, "demo", "--headless", "--radios", "--seed", str(seed), "--duration", str(arguments.duration), "--fps", str(arguments.fps), *arguments.options]
     done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)

@@ -148,9 +148,10 @@ async function main(url, browser, screenshots, { robots: wanted, "least-rate": l
       await page.setViewportSize({ width: 1280, height: 800 });  // of the picture in the README
       // Some seconds of play, for the trails.
       await pause(6000);
-      const striker = (await shown_picture()).robots.find(({ role, scene: { balls } }) => role === "striker" && balls.length > 0)
-        ?? (await shown_picture()).robots.find(({ scene: { balls } }) => balls.length > 0) ?? (await shown_picture()).robots[0];
-      await page.locator(`table.robots tbody tr[data-robot="${striker.id}"]`).click();
+      const { robots } = await shown_picture();
+      const seers = robots.filter(({ scene: { balls } }) => balls.length > 0);
+      const { id } = seers.find(({ role }) => role === "striker") ?? seers[0] ?? robots[0];
+      await page.locator(`table.robots tbody tr[data-robot="${id}"]`).click();
       await until("its picture is there", async () => (await page.locator('[data-show="robot-picture"][data-there="true"]').count()) === 1);
       await pause(1000);
       await picture("match");

@@ -58,16 +58,21 @@ export interface FreeSpace {
   state: ("blocked" | "free" | "unseen")[];
 }
 
-export interface Track {
-  id: number;
-  kind: "ball" | "robot";
-  team: Team;
+/// What moves, and how well that is known.
+export interface Moving {
   x: number;
   y: number;
   vx: number;
   vy: number;
+  /// Row-major x, y, vx, vy.
   cov: number[];
   age: number;
+}
+
+export interface Track extends Moving {
+  id: number;
+  kind: "ball" | "robot";
+  team: Team;
 }
 
 export interface Pose {

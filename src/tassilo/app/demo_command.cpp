@@ -64,22 +64,21 @@ bool is_paced(const DemoArguments& arguments) { return !arguments.is_headless &&
 class Beside {
  public:
   explicit Beside(LiveMonitor& monitor) : thread_([this, &monitor] { listen(monitor); }) {}
-  ~Beside() {
-    is_over_ = true;
-    thread_.join();
-  }
+  ~Beside() { end(); }
   Beside(const Beside&) = delete;
   Beside& operator=(const Beside&) = delete;
   bool has_failed() const { return has_failed_; }
   /// Throws what it failed of.
   void finish() {
-    is_over_ = true;
-    thread_.join();
-    thread_ = std::thread([] {});
+    end();
     if (trouble_) std::rethrow_exception(trouble_);
   }
 
  private:
+  void end() {
+    is_over_ = true;
+    if (thread_.joinable()) thread_.join();
+  }
   void listen(LiveMonitor& monitor) {
     try {
       monitor.run([&] { return is_over_.load(); });
@@ -123,10 +122,9 @@ void play(SimMatch& match, const DemoArguments& arguments, const std::function<b
     std::this_thread::sleep_until(next);
   }
   if (arguments.quiet) return;
-  const MatchReport report = match.report();
   const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
   fmt::print("\n{:.1f} s played in {:.1f} s; {:.1f} images a second and robot; cyan {} : {} magenta\n", match.t(),
-             seconds, static_cast<double>(report.images) / arguments.match.robots / std::max(seconds, 1e-9),
+             seconds, static_cast<double>(match.report().images) / arguments.match.robots / std::max(seconds, 1e-9),
              match.score().cyan, match.score().magenta);
   constexpr double slower = 0.95;  // is seen
   if (is_paced(arguments) && match.t() < slower * arguments.speed * seconds)

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "tassilo/base/option_check.h"
 #include "tassilo/message/from_scene.h"
@@ -27,8 +26,6 @@ std::optional<M> believed(const std::vector<std::byte>& bytes, int robot) {
 
 }  // namespace
 
-std::int64_t stamp_of(double t) { return std::llround(t * 1e9); }
-
 TeamPacket packet_of(int robot, Team team, const Scene& scene, Role role) {
   const MessageContext context{.robot = robot, .team = team};
   const ros::Time stamp = ros_time(scene.t);
@@ -48,14 +45,14 @@ std::optional<TeamWord> word_of(const TeamPacket& packet, int robot) {
   const auto robots = believed<msgs::RobotArray>(packet.robots, robot);
   if (!state || !balls || !robots) return std::nullopt;
   // Of one image, or nothing can be said of any.
-  const ros::Time stamp = state->header.stamp;
-  const auto is_of_it = [&](const ros::Header& header) { return seconds_of(header.stamp) == seconds_of(stamp); };
+  const std::int64_t stamp = nanoseconds_of(state->header.stamp);
+  const auto is_of_it = [&](const ros::Header& header) { return nanoseconds_of(header.stamp) == stamp; };
   if (!is_of_it(balls->header) || !is_of_it(robots->header)) return std::nullopt;
   TeamWord word;
   word.role = role_from(state->role);
   word.observation.robot = robot;
-  word.observation.t = seconds_of(stamp);
-  word.observation.stamp = stamp_of(word.observation.t);
+  word.observation.t = seconds_of(state->header.stamp);
+  word.observation.stamp = stamp;
   word.observation.balls = balls_from(*balls);
   word.observation.robots = robots_from(*robots);
   if (packet.pose.empty()) return word;

@@ -21,8 +21,6 @@ struct TeamPacket {
   std::vector<std::byte> state, balls, robots;
   std::vector<std::byte> pose;  ///< Empty: it does not know where it is.
 };
-/// The nanosecond by which an image is known.
-std::int64_t stamp_of(double t);
 /// Of what a robot saw at scene.t, and the role it plays.
 TeamPacket packet_of(int robot, Team team, const Scene& scene, Role role);
 

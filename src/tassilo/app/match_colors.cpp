@@ -52,17 +52,14 @@ TrainedHall train_on_stills(Renderer& renderer, const FieldModel& field, std::ui
     // Goals are what is rarest: every other still looks at one.
     const double goal_x = still % 4 < 2 ? field.length / 2 : -field.length / 2;
     eye.theta = still % 2 == 0 ? std::atan2(-eye.at.y, goal_x - eye.at.x) : angle(random);
-    const auto before = [&](double distance, double side) {
-      return FieldPoint{eye.at.x + distance * std::cos(eye.theta) - side * std::sin(eye.theta),
-                        eye.at.y + distance * std::sin(eye.theta) + side * std::cos(eye.theta)};
-    };
-    state.ball.at = before(0.7 + 0.08 * still, still % 3 - 1.);
+    const FieldFromRobot before = pose_of(eye);
+    state.ball.at = before * FloorPoint{0.7 + 0.08 * still, still % 3 - 1.};
     SimRobot cyan = eye, magenta = eye;
     cyan.id = 2;
-    cyan.at = before(1.2, 0.5);
+    cyan.at = before * FloorPoint{1.2, 0.5};
     magenta.id = 3;
     magenta.team = Team::magenta;
-    magenta.at = before(1.3, -0.6);
+    magenta.at = before * FloorPoint{1.3, -0.6};
     state.robots = {eye, cyan, magenta};
     const Frame frame = renderer.render(state, eye.id);
     take_samples(frame, renderer.look(state, eye.id), still, samples);

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "tassilo/app/match_air.h"
-#include "tassilo/sim/world.h"
 
 // How good what was seen and known in a simulated match was, against what is true. Memory does not grow with its
 // length.
@@ -51,8 +50,6 @@ struct RadioFigures {
 };
 
 struct MatchReport {
-  double seconds = 0;  ///< Of play.
-  Score score;
   std::int64_t images = 0;
   std::map<std::string, std::int64_t> deeds;  ///< Images after which cyan did this.
   static constexpr double kAnother = 0.5;     ///< Further off, what was seen is not the ball. [m]

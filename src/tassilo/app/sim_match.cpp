@@ -9,6 +9,7 @@
 #include "tassilo/base/option_check.h"
 #include "tassilo/geometry/angle.h"
 #include "tassilo/localize/localize.h"
+#include "tassilo/message/from_scene.h"
 
 namespace tassilo {
 namespace {
@@ -217,14 +218,14 @@ void SimMatch::see_and_play(Seat& seat) {
   // Its own image reaches it without the air.
   TeamObservation own;
   own.robot = seat.id;
-  own.stamp = stamp_of(now);
+  own.stamp = nanoseconds_of(ros_time(now));  // as the others are told
   own.t = now;
   own.pose = scene.pose;
   own.balls = scene.balls;
   own.robots = scene.robots;
   seat.fusion.add(own, now);
   seat.alone.add(own, now);
-  const TeamWorld team = seat.fusion.at(now);
+  seat.team_ball = seat.fusion.at(now).ball;
   note(seat, scene);
 
   std::vector<Teammate> mates;
@@ -239,7 +240,7 @@ void SimMatch::see_and_play(Seat& seat) {
   input.t = now;
   input.scene = &scene;
   input.field = &options_.field;
-  input.ball = told(team.ball);
+  input.ball = told(seat.team_ball);
   input.mates = mates;
   PlayerStep step = tassilo::play(seat.state, input, seat.player);
   seat.state = std::move(step.state);
@@ -366,8 +367,6 @@ void SimMatch::step() {
   note_balls(now);
   ++frame_;
   go_on(1 / options_.frame_rate);
-  report_.seconds = world_.state().t;
-  report_.score = world_.score();
 }
 
 void SimMatch::note(Seat& seat, const Scene& scene) {
@@ -415,7 +414,7 @@ void SimMatch::note_balls(double t) {
   };
   std::optional<TeamBall> surest;
   for (auto& [id, seat] : seats_) {
-    note(seat.sees_ball ? report_.seeing : report_.blind, seat.fusion.at(t).ball);
+    note(seat.sees_ball ? report_.seeing : report_.blind, seat.team_ball);
     auto alone = seat.alone.at(t).ball;
     if (alone && (!surest || alone->position.covariance.trace() < surest->position.covariance.trace()))
       surest = std::move(alone);

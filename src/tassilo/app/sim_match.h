@@ -74,7 +74,8 @@ class SimMatch {
     VisionWorkspace workspace;
     Odometry odometry;
     TeamFusion fusion;
-    TeamFusion alone;  ///< Of its own images only, to compare with.
+    std::optional<TeamBall> team_ball;  ///< As it knows it with its newest image.
+    TeamFusion alone;                   ///< Of its own images only, to compare with.
     bool sees_ball = false;
     std::map<int, Teammate> mates;
     std::map<int, double> heard_at;  ///< [s]

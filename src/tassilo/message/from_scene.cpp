@@ -89,6 +89,8 @@ ros::Time ros_time(double t) {
   return {static_cast<std::int32_t>(seconds), static_cast<std::uint32_t>(nanoseconds)};
 }
 
+std::int64_t nanoseconds_of(const ros::Time& time) { return time.sec * std::int64_t{1'000'000'000} + time.nanosec; }
+
 double seconds_of(const ros::Time& time) { return time.sec + 1e-9 * time.nanosec; }
 
 ros::Quaternion quaternion_of(double theta) { return {0, 0, std::sin(theta / 2), std::cos(theta / 2)}; }

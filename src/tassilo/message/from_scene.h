@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@ namespace tassilo {
 /// Nearest nanosecond; t >= 0, before the year 2038. [s since the UNIX epoch]
 ros::Time ros_time(double t);
 double seconds_of(const ros::Time& time);
+std::int64_t nanoseconds_of(const ros::Time& time);
 
 /// About the vertical. [rad]
 ros::Quaternion quaternion_of(double theta);

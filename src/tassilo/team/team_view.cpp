@@ -24,8 +24,6 @@ std::string with_digits(double value, int digits) {
   return text.data();
 }
 
-std::int64_t nanoseconds_of(const ros::Time& time) { return time.sec * std::int64_t{1'000'000'000} + time.nanosec; }
-
 std::string clock_words(double ahead) {
   return "its clock is " + with_digits(std::abs(ahead), 1) + " s " + (ahead > 0 ? "ahead" : "behind");
 }

@@ -1,6 +1,6 @@
 import { meters } from "../format";
 import type { FieldPlan } from "../link/api";
-import type { Goal, OnFloor, Point, Robot, Scene, Team, Track } from "../scene";
+import type { Goal, Moving, OnFloor, Point, Robot, Scene, Team, Track } from "../scene";
 import { covariance_ellipse } from "./ellipse";
 import type { Palette, Pen } from "./pen";
 
@@ -120,7 +120,7 @@ function draw_track(pen: Pen, track: Track, uncertainty: boolean, sizes: Sizes):
 }
 
 /// A velocity within its own uncertainty points anywhere; an arrow would claim a direction that nobody knows.
-export function is_moving(track: Pick<Track, "vx" | "vy" | "cov">): boolean {
+export function is_moving(track: Moving): boolean {
   const variance = (track.cov[10] ?? Infinity) + (track.cov[15] ?? Infinity);
   return Math.hypot(track.vx, track.vy) > shown_sigmas * Math.sqrt(variance);
 }

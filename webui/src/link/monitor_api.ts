@@ -1,4 +1,4 @@
-import type { Goal, OnFloor, Robot, Scene, Team } from "../scene";
+import type { Goal, Moving, OnFloor, Robot, Scene, Team } from "../scene";
 import { ask, type FieldPlan, patience_ms, Refused } from "./api";
 
 // The requests that `tassilo monitor` answers; public/monitor_openapi.yaml documents them.
@@ -51,14 +51,7 @@ export interface TeamRobot {
 }
 
 /// What the robots know together, in the field frame at the picture's time.
-export interface TeamThing {
-  x: number;
-  y: number;
-  vx: number;
-  vy: number;
-  /// Row-major x, y, vx, vy.
-  cov: number[];
-  age: number;
+export interface TeamThing extends Moving {
   /// Who saw it of late.
   robots: number[];
 }

@@ -9,7 +9,7 @@ import { canvas_from_camera, type FieldCamera, panned, zoomed } from "./field_ca
 import { draw_team, type FieldContent, robot_at, team_area } from "./field_drawing";
 import { all_layers, layers_from, usual_layers } from "./layers";
 import { measure_words, measured } from "./measuring";
-import { pose, robot, team_ball, team_picture, team_thing } from "./testing";
+import { pose, robot, team_picture, team_thing } from "./testing";
 import { Trails } from "./trails";
 import { share_within, usual_share } from "./windows";
 
@@ -41,7 +41,7 @@ describe.each(fields)("the field window on a field: %s", (_, field) => {
   const robots = [full_robot(1), full_robot(2, { presence: "stale", age: 2 }), full_robot(3, { presence: "gone", age: 20, team: "unknown" }), robot(4, {}, null), full_robot(255, { team: "magenta" })];
   robots[0]!.scene.pose!.mirror = true;
   const everything = Object.fromEntries(all_layers.map(({ key }) => [key, true])) as FieldContent["layers"];
-  const together = { team_ball: { ...team_ball(0.5, 0.2), vx: 1, age: 0.5 }, opponents: [{ ...team_thing(-1, 0), id: 3, team: "magenta" as const }, { ...team_thing(0, 1), id: 4, team: "unknown" as const, cov: [] }] };
+  const together = { team_ball: { ...team_thing(0.5, 0.2), vx: 1, age: 0.5 }, opponents: [{ ...team_thing(-1, 0), id: 3, team: "magenta" as const }, { ...team_thing(0, 1), id: 4, team: "unknown" as const, cov: [] }] };
   const full_picture = { ...team_picture(10, robots), ...together };
   const trails = new Trails();
   for (let t = 9; t < 10; t += 0.1) trails.add(team_picture(t, robots));
@@ -105,14 +105,14 @@ describe("the team's ball and opponents", () => {
   };
 
   test("a filled ball where the team knows it, an outline where an opponent is, nothing where nobody knows", () => {
-    const shown = drawn({ team_ball: team_ball(1, -0.5), opponents: [{ ...team_thing(-1, 1), id: 1, team: "magenta" }] });
+    const shown = drawn({ team_ball: team_thing(1, -0.5), opponents: [{ ...team_thing(-1, 1), id: 1, team: "magenta" }] });
     expect(rounds(shown, [1, -0.5])).toContainEqual({ how: "fill", color: palette.ball, alpha: 1 });
     expect(rounds(shown, [-1, 1])).toContainEqual({ how: "stroke", color: palette.magenta, alpha: 1 });
     expect(rounds(shown, [-1, 1])).not.toContainEqual(expect.objectContaining({ how: "fill", color: palette.magenta }));
     expect(rounds(drawn({}), [1, -0.5])).toEqual([]);
   });
   test("the older, the fainter, but never gone while it is told", () => {
-    const alphas = [0, 0.5, 1, 1.5, 2, 5].map((age) => Math.max(...rounds(drawn({ team_ball: { ...team_ball(1, 1), age } }), [1, 1]).map(({ alpha }) => alpha)));
+    const alphas = [0, 0.5, 1, 1.5, 2, 5].map((age) => Math.max(...rounds(drawn({ team_ball: { ...team_thing(1, 1), age } }), [1, 1]).map(({ alpha }) => alpha)));
     expect(alphas).toEqual([...alphas].sort((a, b) => b - a));
     expect(alphas[0]).toBe(1);
     expect(alphas[2]).toBeLessThan(alphas[0]!);
@@ -121,8 +121,8 @@ describe("the team's ball and opponents", () => {
   test("its ellipse holds nine of ten", () => {
     const sigma = 0.4;
     const cov = Array.from({ length: 16 }, (_, i) => (i % 5 === 0 ? sigma ** 2 : 0));
-    const shown = drawn({ team_ball: { ...team_ball(1, 1), cov } });
-    const without = drawn({ team_ball: { ...team_ball(1, 1), cov } }, { ...usual_layers, uncertainty: false });
+    const shown = drawn({ team_ball: { ...team_thing(1, 1), cov } });
+    const without = drawn({ team_ball: { ...team_thing(1, 1), cov } }, { ...usual_layers, uncertainty: false });
     expect(without.calls.length).toBeLessThan(shown.calls.length);
     const [x, y] = shown.place([1, 1]);
     const unit = shown.place([2, 1])[0] - x;

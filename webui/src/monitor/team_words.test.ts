@@ -1,11 +1,11 @@
 import { expect, test } from "vitest";
-import { team_ball, team_picture, team_thing } from "./testing";
+import { team_picture, team_thing } from "./testing";
 import { opponents_words, team_ball_words, worst_sigma } from "./team_words";
 
 test("who sees the ball is told, how long ago and how sure; or that nobody does", () => {
   expect(team_ball_words(team_picture(1))).toBe("nobody knows where it is");
-  expect(team_ball_words({ team_ball: { ...team_ball(), robots: [2, 7], age: 0.42 } })).toBe("seen by 2, 7 · 0.4\u00a0s\u00a0ago · ±\u00a05.0\u00a0cm");
-  expect(team_ball_words({ team_ball: { ...team_ball(), robots: [], cov: [] } })).toBe("seen by nobody of late · 0.0\u00a0s\u00a0ago");
+  expect(team_ball_words({ team_ball: { ...team_thing(), robots: [2, 7], age: 0.42 } })).toBe("seen by 2, 7 · 0.4\u00a0s\u00a0ago · ±\u00a05.0\u00a0cm");
+  expect(team_ball_words({ team_ball: { ...team_thing(), robots: [], cov: [] } })).toBe("seen by nobody of late · 0.0\u00a0s\u00a0ago");
 });
 
 test("the worst direction is no better than either axis, and the same however the ball is turned", () => {

@@ -1,11 +1,11 @@
+import { covariance_ellipse } from "../canvas/ellipse";
 import { plus_minus } from "../format";
 import type { TeamPicture } from "../link/monitor_api";
 import { duration_words } from "./moment";
 
 /// Standard deviation along the worst direction, [m]; covariance  row-major x, y, vx, vy.
 export function worst_sigma(covariance: readonly number[]): number {
-  const [xx, xy, yy] = [covariance[0] ?? NaN, covariance[1] ?? NaN, covariance[5] ?? NaN];
-  return Math.sqrt(Math.max((xx + yy) / 2 + Math.hypot((xx - yy) / 2, xy), 0));
+  return covariance_ellipse([0, 0], covariance, 1, 4)?.major ?? NaN;
 }
 
 /// Who sees the team's ball, how old that is, and how sure.

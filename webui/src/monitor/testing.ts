@@ -20,8 +20,6 @@ export function team_thing(x = 0, y = 0): TeamThing {
   return { x, y, vx: 0, vy: 0, cov: Array.from({ length: 16 }, (_, i) => (i % 5 === 0 ? 0.0025 : 0)), age: 0, robots: [1] };
 }
 
-export const team_ball = team_thing;
-
 export function team_picture(t: number, robots: TeamRobot[] = []): TeamPicture {
   return { t, robots, opponents: [], troubles: [], news: 0, counts: { heard: 0, refused: 0, late: 0, repeated: 0, bytes_per_second: 0 } };
 }

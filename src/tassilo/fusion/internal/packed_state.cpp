@@ -1,32 +1,34 @@
 #include "tassilo/fusion/internal/packed_state.h"
 
-#include <algorithm>
+#include <span>
 
 namespace tassilo {
 namespace {
 
-int belief_count(const TrackFacts& facts) { return facts.may_be_kicked() ? 2 : 1; }
+/// Those of a track that mean something.
+template <class Track>
+auto beliefs_of(Track& track) {
+  return std::span(track.beliefs).first(track.may_be_kicked() ? 2 : 1);
+}
 
 }  // namespace
 
 PackedState packed(const TeamState& state) {
   PackedState packed{state.t, state.next_id, {}, {}, state.mates};
   packed.facts.reserve(state.tracks.size());
-  std::size_t count = 0;
+  Eigen::Index count = 0;
   for (const FieldTrack& track : state.tracks)
-    for (int k = 0; k < belief_count(track); ++k) {
-      const auto size = static_cast<std::size_t>(track.beliefs[static_cast<std::size_t>(k)].mean.size());
-      count += 1 + size + size * size;
-    }
-  packed.numbers.reserve(count);
+    for (const Belief& belief : beliefs_of(track)) count += 1 + belief.mean.size() + belief.covariance.size();
+  packed.numbers.reserve(static_cast<std::size_t>(count));
+  const auto add = [&](const auto& matrix) {
+    packed.numbers.insert(packed.numbers.end(), matrix.data(), matrix.data() + matrix.size());
+  };
   for (const FieldTrack& track : state.tracks) {
     packed.facts.push_back(track);
-    for (int k = 0; k < belief_count(track); ++k) {
-      const Belief& belief = track.beliefs[static_cast<std::size_t>(k)];
+    for (const Belief& belief : beliefs_of(track)) {
       packed.numbers.push_back(static_cast<double>(belief.mean.size()));
-      packed.numbers.insert(packed.numbers.end(), belief.mean.data(), belief.mean.data() + belief.mean.size());
-      packed.numbers.insert(packed.numbers.end(), belief.covariance.data(),
-                            belief.covariance.data() + belief.covariance.size());
+      add(belief.mean);
+      add(belief.covariance);
     }
   }
   return packed;
@@ -39,9 +41,9 @@ void unpack(const PackedState& packed, TeamState& state) {
   state.tracks.resize(packed.facts.size());
   const double* next = packed.numbers.data();
   for (std::size_t i = 0; i < packed.facts.size(); ++i) {
-    static_cast<TrackFacts&>(state.tracks[i]) = packed.facts[i];
-    for (int k = 0; k < belief_count(packed.facts[i]); ++k) {
-      Belief& belief = state.tracks[i].beliefs[static_cast<std::size_t>(k)];
+    FieldTrack& track = state.tracks[i];
+    static_cast<TrackFacts&>(track) = packed.facts[i];
+    for (Belief& belief : beliefs_of(track)) {
       const auto size = static_cast<Eigen::Index>(*next++);
       belief.mean = Eigen::Map<const Eigen::VectorXd>(next, size);
       next += size;
